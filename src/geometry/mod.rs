@@ -1,0 +1,3 @@
+//! Shapes, and what a ray meets of them.
+
+pub mod mesh;

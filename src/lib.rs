@@ -1,0 +1,5 @@
+//! Penumbra.
+
+pub mod geometry;
+pub mod math;
+pub mod scene;

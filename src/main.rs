@@ -1,0 +1,2 @@
+//! Penumbra.
+fn main() {}

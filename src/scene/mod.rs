@@ -1,0 +1,3 @@
+//! The scene.
+
+pub mod description;
