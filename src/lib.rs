@@ -1,7 +1,7 @@
 //! Penumbra: see how a picture is made of light.
 
 pub mod color;
-pub mod math;
-
 pub mod geometry;
+pub mod io;
+pub mod math;
 pub mod scene;
