@@ -1,6 +1,7 @@
 //! Files: what a scene names, read with every limit checked before memory is taken.
 
 mod excerpt;
+pub mod mtl;
 pub mod obj;
 
 pub use excerpt::excerpt;
