@@ -99,9 +99,10 @@ impl Film {
         }
         self.n_samples += n_samples;
         if self.n_samples.is_power_of_two() {
-            let sums = self.sums.iter().map(|s| {
-                f64::from(luminance(Rgb::new(s[0] as f32, s[1] as f32, s[2] as f32)))
-            });
+            let sums = self
+                .sums
+                .iter()
+                .map(|s| f64::from(luminance(Rgb::new(s[0] as f32, s[1] as f32, s[2] as f32))));
             self.noise.record(self.n_samples, sums);
         }
     }

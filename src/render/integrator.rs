@@ -14,10 +14,10 @@ use crate::color::{Rgb, luminance};
 use crate::geometry::Hit;
 use crate::math::sampler::SampleNumbers;
 use crate::math::{Ray, RayBatch};
+use crate::render::PassStatistics;
 use crate::render::plan::Tile;
 use crate::render::shading::Shading;
 use crate::render::world::World;
-use crate::render::PassStatistics;
 use crate::scene::description::IntegratorKind;
 use crate::scene::light::LightSample;
 
@@ -306,12 +306,7 @@ impl<'a> TileRenderer<'a> {
         let mut ray = Ray::new(shading.surface.leave(direction), direction);
         ray.source = shading.surface.source;
         self.next_rays.push(ray);
-        self.next_paths.push(Path {
-            throughput,
-            depth,
-            sees_lights: is_specular,
-            ..path
-        });
+        self.next_paths.push(Path { throughput, depth, sees_lights: is_specular, ..path });
     }
 
     /// The mirrored direction, if it is above the geometric surface.

@@ -246,11 +246,7 @@ fn from_area(
     })
 }
 
-fn from_point(
-    from: Vec3,
-    position: Vec3,
-    intensity: impl Fn(Vec3) -> Rgb,
-) -> Option<LightSample> {
+fn from_point(from: Vec3, position: Vec3, intensity: impl Fn(Vec3) -> Rgb) -> Option<LightSample> {
     let reach = position - from;
     let distance2 = reach.length_squared();
     if distance2 <= 0.0 {

@@ -176,10 +176,7 @@ impl<'a> Resolver<'a> {
         let materials = match (&entry.material, &asset) {
             (Some(name), _) => {
                 vec![self.material_ids.get(name.as_str()).copied().ok_or_else(|| {
-                    ResolveError::Invalid {
-                        path: path("material"),
-                        problem: "names no material",
-                    }
+                    ResolveError::Invalid { path: path("material"), problem: "names no material" }
                 })?]
             }
             (None, Some((key, asset))) => self.slots(key, asset)?,
@@ -270,8 +267,7 @@ fn texture(entry: &file::TextureDescription, assets: &Assets) -> Result<Texture,
     if colors.len() < 2 {
         return Err(lacking("needs two colors or more"));
     }
-    let octaves =
-        Octaves { count: entry.octaves, lacunarity: entry.lacunarity, gain: entry.gain };
+    let octaves = Octaves { count: entry.octaves, lacunarity: entry.lacunarity, gain: entry.gain };
     let (scale, distortion) = (entry.scale, entry.distortion);
     Ok(Texture::Noise(Noise { pattern, scale, octaves, distortion, colors }))
 }
@@ -310,13 +306,20 @@ fn light(entry: &file::LightDescription) -> Light {
             let radiance = scaled(0.25 / (PI * PI * radius * radius));
             Emitter::Sphere { center, radius: radius as f32, radiance }
         }
-        file::LightKind::Rectangle | file::LightKind::Disk if is_point => {
-            Emitter::Spot { position: center, normal: normal.as_vec3(), intensity: scaled(1.0 / PI) }
-        }
+        file::LightKind::Rectangle | file::LightKind::Disk if is_point => Emitter::Spot {
+            position: center,
+            normal: normal.as_vec3(),
+            intensity: scaled(1.0 / PI),
+        },
         file::LightKind::Rectangle => {
             let frame = light_frame(normal, dvec(entry.up));
             let half = [(0.5 * width) as f32, (0.5 * height) as f32];
-            Emitter::Rectangle { center, frame, half, radiance: scaled(1.0 / (PI * width * height)) }
+            Emitter::Rectangle {
+                center,
+                frame,
+                half,
+                radiance: scaled(1.0 / (PI * width * height)),
+            }
         }
         file::LightKind::Disk => {
             let frame = light_frame(normal, dvec(entry.up));

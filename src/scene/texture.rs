@@ -188,11 +188,8 @@ impl Noise {
     }
 
     fn displaced(&self, q: DVec3) -> DVec3 {
-        const ELSEWHERE: [DVec3; 3] = [
-            DVec3::new(31.7, 11.3, 5.9),
-            DVec3::new(7.1, 43.9, 23.3),
-            DVec3::new(53.3, 2.7, 37.1),
-        ];
+        const ELSEWHERE: [DVec3; 3] =
+            [DVec3::new(31.7, 11.3, 5.9), DVec3::new(7.1, 43.9, 23.3), DVec3::new(53.3, 2.7, 37.1)];
         if self.distortion == 0.0 {
             return q;
         }
