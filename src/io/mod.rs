@@ -1,0 +1,6 @@
+//! Files: what a scene names, read with every limit checked before memory is taken.
+
+mod excerpt;
+pub mod obj;
+
+pub use excerpt::excerpt;
