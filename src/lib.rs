@@ -4,4 +4,5 @@ pub mod color;
 pub mod math;
 
 pub mod geometry;
+pub mod io;
 pub mod scene;

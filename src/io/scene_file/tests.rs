@@ -1,0 +1,636 @@
+//! What the reader takes and refuses, and what it says.
+
+use super::*;
+use crate::scene::description::{ColorOrTexture, OneOrTwo};
+
+/// A camera in one line, so that a snippet below it starts at line 2.
+const CAMERA: &str = "camera = { eye = [0, 1, 5], target = [0, 1, 0] }\n";
+
+/// A scene with one of everything, every key of which has a value of its own.
+pub(super) const FULL: &str = include_str!("full.toml");
+
+fn read(snippet: &str) -> Result<SceneDescription, SceneFileError> {
+    parse(&format!("{CAMERA}{snippet}"), &[])
+}
+
+fn sets(texts: &[&str]) -> Vec<Override> {
+    texts.iter().map(|text| Override::parse(text).unwrap()).collect()
+}
+
+/// Snippet below a camera, line, column, part of the message.
+const REFUSED: &[(&str, usize, usize, &str)] = &[
+    // Not TOML.
+    ("[render", 2, 8, "not TOML"),
+    ("[render]\nwidth = ", 3, 9, "not TOML"),
+    ("[render]\nwidth = 5\nwidth = 6", 4, 1, "duplicate key"),
+    ("[render]\nintegrator = path", 3, 14, "must be quoted"),
+    ("x = [[[[[[[[[[[[[[[[[[[[", 2, 21, "nested too deeply"),
+    // Sections and keys.
+    ("[rendr]", 2, 2, "rendr: there is no section \"rendr\"; did you mean render?"),
+    ("[zzz]", 2, 2, "known: render, camera"),
+    ("render = 5", 2, 1, "render: this is a section; write it as [render]"),
+    ("[[render]]", 2, 3, "write it as [render]"),
+    ("[materials]\nname = \"a\"", 2, 2, "write each material as [[materials]]"),
+    ("[materials.ceramic]\ndiffuse = [0, 0, 0]", 2, 2, "write each material as [[materials]]"),
+    ("lights = [1]", 2, 1, "write each light as [[lights]]"),
+    ("[render]\nwidht = 5", 3, 1, "render.widht: there is no such key; did you mean width?"),
+    ("[render]\n  \tzzz = 5", 3, 4, "known: width, height, samples"),
+    ("[[materials]]\nname = \"a\"\nroughness = 1", 4, 1, "materials.a.roughness: there is no such"),
+    ("[[materials]]\nname=\"a\"\nbump = {texture=\"t\", hight=1}", 4, 22, "did you mean height?"),
+    ("[[materials]]\nname = \"a b\"\nalpha = 1", 4, 1, "materials.\"a b\".alpha"),
+    // What is required.
+    (
+        "[[textures]]\ntype = \"wood\"",
+        2,
+        1,
+        "textures.(no. 1).name: this key is required; give a string",
+    ),
+    ("[[textures]]\nname = \"t\"", 2, 1, "textures.t.type: this key is required; give \"solid\","),
+    ("[[materials]]\ndiffuse = [0, 0, 0]", 2, 1, "materials.(no. 1).name: this key is required"),
+    (
+        "[[lights]]\nposition = [0,0,1]\npower = [1,1,1]",
+        2,
+        1,
+        "lights.light-1.type: this key is required",
+    ),
+    (
+        "[[lights]]\ntype = \"sun\"\npower = [1,1,1]",
+        2,
+        1,
+        "lights.light-1.position: this key is required",
+    ),
+    (
+        "\n[[lights]]\ntype=\"sun\"\nposition=[1,1,1]",
+        3,
+        1,
+        "lights.light-1.power: this key is required",
+    ),
+    ("[[objects]]\nradius = 1", 2, 1, "objects.object-1.type: this key is required; give \"mesh\""),
+    (
+        "[[objects]]\ntype = \"mesh\"",
+        2,
+        1,
+        "file: this key is required by type \"mesh\"; give the path",
+    ),
+    (
+        "[[objects]]\ntype = \"sphere\"\nradius=1",
+        2,
+        1,
+        "center: this key is required by type \"sphere\"",
+    ),
+    ("[[objects]]\ntype = \"sphere\"\ncenter=[0,0,0]", 2, 1, "radius: this key is required"),
+    ("[[objects]]\ntype = \"plane\"\npoint=[0,0,0]", 2, 1, "normal: this key is required"),
+    ("[[objects]]\ntype = \"plane\"\nnormal=[0,0,1]", 2, 1, "point: this key is required"),
+    ("[[objects]]\ntype = \"box\"\nmin=[0,0,0]", 2, 1, "max: this key is required"),
+    ("[[objects]]\ntype = \"box\"\nmax=[0,0,0]", 2, 1, "min: this key is required"),
+    ("[[objects]]\ntype = \"cone\"\nbase=[0,0,0]\nradius=1", 2, 1, "tip: this key is required"),
+    ("[[objects]]\ntype = \"cylinder\"\nbase=[0,0,0]\nradius=1", 2, 1, "top: this key is required"),
+    ("[[objects]]\ntype = \"cylinder\"\ntop=[0,0,0]\nradius=1", 2, 1, "base: this key is required"),
+    (
+        "[[objects]]\ntype = \"cone\"\nbase=[0,0,0]\ntip=[0,1,0]",
+        2,
+        1,
+        "radius: this key is required",
+    ),
+    (
+        "[[textures]]\nname=\"t\"\ntype = \"image\"",
+        2,
+        1,
+        "file: this key is required by type \"image\"",
+    ),
+    (
+        "[[textures]]\nname=\"t\"\ntype = \"solid\"",
+        2,
+        1,
+        "colors: this key is required by type \"solid\"",
+    ),
+    (
+        "[[materials]]\nname=\"a\"\nbump = {texture=\"t\"}",
+        4,
+        8,
+        "a.bump.height: this key is required",
+    ),
+    ("[[materials]]\nname=\"a\"\nbump = {height=1}", 4, 8, "a.bump.texture: this key is required"),
+    (
+        "[[materials]]\nname=\"a\"\n[materials.bump]\nheight=1",
+        4,
+        1,
+        "a.bump.texture: this key is required",
+    ),
+    // Numbers.
+    ("[render]\nwidth = 0", 3, 9, "render.width: 0 is not a width; give a whole number from 1"),
+    ("[render]\nwidth = 16385", 3, 9, "16385"),
+    ("[render]\nheight = 1.5", 3, 10, "1.5 is not a height"),
+    ("[render]\nheight = 0", 3, 10, "from 1 to 16384"),
+    ("[render]\nsamples = 0", 3, 11, "from 1 to 1048576"),
+    ("[render]\nsamples = 1048577", 3, 11, "1048577"),
+    ("[render]\nsamples = 16.0", 3, 11, "16.0 is not a number of samples"),
+    ("[render]\nsamples = \"16\"", 3, 11, "\"16\" is not a number of samples"),
+    ("[render]\nmax_depth = -1", 3, 13, "from 0 to 1024"),
+    ("[render]\nmax_depth = 1025", 3, 13, "1025"),
+    ("[render]\nseed = -1", 3, 8, "from 0 to 4294967295"),
+    ("[render]\nseed = 4294967296", 3, 8, "4294967296"),
+    ("[render]\nseed = 99999999999999999999", 3, 8, "1e20 is not a seed"),
+    ("[render]\nintegrator = \"pth\"", 3, 14, "; did you mean \"path\"?"),
+    ("[render]\nfilter = \"gauss\"", 3, 10, "give \"box\""),
+    ("[render]\nadaptive = 1", 3, 12, "1 is not a switch; give true or false"),
+    ("[render]\nsampler = \"halton\"", 3, 11, "\"sobol\" or \"random\""),
+    ("[tone_mapping]\nexposure = nan", 3, 12, "nan is not finite; give a number"),
+    ("[tone_mapping]\nexposure = 1e4", 3, 12, "too large to compute with; stay within 100"),
+    ("[tone_mapping]\noperator = \"filmic\"", 3, 12, "\"aces\" or \"agx\""),
+    ("[environment]\nambient = [0, -1, 0]", 3, 15, "[0, -1, 0] is not a colour"),
+    ("[environment]\nambient = [0, 0]", 3, 11, "give three numbers of at least 0"),
+    ("[environment]\nambient = 0.5", 3, 11, "0.5 is not a colour"),
+    ("[environment]\nbackground = 1979-05-27", 3, 14, "1979-05-27 is not a background"),
+    (
+        "[environment]\nbackground = \"sky\"",
+        3,
+        14,
+        "no texture \"sky\"; this scene has no textures",
+    ),
+    ("[environment]\nbackground = [inf, 0, 0]", 3, 15, "or the name of a texture"),
+    ("[environment]\nbackground = [1e31, 0, 0]", 3, 15, "too large to compute with"),
+    // Textures.
+    (
+        "[[textures]]\nname=\"t\"\ntype = \"marbel\"",
+        4,
+        8,
+        "not a type of texture; did you mean \"marble\"?",
+    ),
+    ("[[textures]]\nname=5\ntype = \"wood\"", 3, 6, "5 is not a name; give a string"),
+    ("[[textures]]\nname=\"t\"\ntype=\"wood\"\nscale = 0", 5, 9, "give a number above 0"),
+    ("[[textures]]\nname=\"t\"\ntype=\"wood\"\noctaves = 13", 5, 11, "from 1 to 12"),
+    ("[[textures]]\nname=\"t\"\ntype=\"wood\"\noctaves = 0", 5, 11, "from 1 to 12"),
+    ("[[textures]]\nname=\"t\"\ntype=\"wood\"\nlacunarity = 0.0", 5, 14, "above 0"),
+    ("[[textures]]\nname=\"t\"\ntype=\"wood\"\ngain = -0.1", 5, 8, "of at least 0"),
+    ("[[textures]]\nname=\"t\"\ntype=\"wood\"\ndistortion = inf", 5, 14, "inf is not finite"),
+    (
+        "[[textures]]\nname=\"t\"\ntype=\"wood\"\ncolors = [[0,0,0]]",
+        5,
+        10,
+        "noise texture takes two colours or",
+    ),
+    (
+        "[[textures]]\nname=\"t\"\ntype=\"wood\"\ncolors = []",
+        5,
+        10,
+        "takes two colours or more, not 0",
+    ),
+    ("[[textures]]\nname=\"t\"\ntype=\"wood\"\ncolors = [[0,0,0],[0,0,-1]]", 5, 24, "each three"),
+    ("[[textures]]\nname=\"t\"\ntype=\"wood\"\ncolors = [[0,0,0],[0,0]]", 5, 19, "list of colours"),
+    (
+        "[[textures]]\nname=\"t\"\ntype=\"solid\"\ncolors = [[0,0,0],[1,1,1]]",
+        5,
+        10,
+        "takes one colour",
+    ),
+    ("[[textures]]\nname=\"t\"\ntype=\"checker\"\ncolors = [[0,0,0]]", 5, 10, "takes two colours"),
+    ("[[textures]]\nname=\"t\"\ntype=\"image\"\nfile = \"\"", 5, 8, "give the path of a file"),
+    (
+        "[[textures]]\nname=\"t\"\ntype=\"wood\"\n[[textures]]\nname=\"t\"\ntype=\"wood\"",
+        6,
+        6,
+        "textures.t.name: \"t\" names two textures; give each its own name",
+    ),
+    // Materials.
+    ("[[materials]]\nname=\"a\"\ndiffuse = [0, 0, 1.5]", 4, 18, "numbers from 0 to 1, or the name"),
+    ("[[materials]]\nname=\"a\"\ndiffuse = \"t\"", 4, 11, "there is no texture \"t\""),
+    ("[[materials]]\nname=\"a\"\nspecular = [2, 0, 0]", 4, 13, "not a reflectance; give three"),
+    ("[[materials]]\nname=\"a\"\nspecular = \"t\"", 4, 12, "\"t\" is not a reflectance"),
+    ("[[materials]]\nname=\"ceramic\"\nalpha_x = -0.2", 4, 11, "-0.2 is not a roughness; give a"),
+    ("[[materials]]\nname=\"a\"\nalpha_y = 0", 4, 11, "give a number above 0"),
+    ("[[materials]]\nname=\"a\"\nalpha_y = 1e-300", 4, 11, "too close to 0 to compute with"),
+    ("[[materials]]\nname=\"a\"\nward = \"dur\"", 4, 8, "did you mean \"duer\"?"),
+    ("[[materials]]\nname=\"a\"\ntangent = [0, 0, 0.0]", 4, 11, "numbers that are not all 0"),
+    ("[[materials]]\nname=\"a\"\nreflection = [0, 0, -0.5]", 4, 21, "not a reflectance"),
+    ("[[materials]]\nname=\"a\"\ntransmission = [0, 1.1, 0]", 4, 20, "not a transmittance"),
+    ("[[materials]]\nname=\"a\"\nior = 0", 4, 7, "0 is not an index of refraction"),
+    ("[[materials]]\nname=\"a\"\nemission = [-1, 0, 0]", 4, 13, "not a radiance"),
+    (
+        "[[materials]]\nname=\"a\"\nbump = 3",
+        4,
+        8,
+        "not a bump map; give { texture = …, height = … }",
+    ),
+    ("[[materials]]\nname=\"a\"\nbump = {texture=\"t\", height=1}", 4, 17, "there is no texture"),
+    (
+        "[[textures]]\nname=\"c\"\ntype=\"checker\"\n[[materials]]\nname=\"a\"\nbump={texture=\"c\",height=1}",
+        7,
+        15,
+        "\"c\" is of type \"checker\", which has no slopes; give a noise or image texture",
+    ),
+    (
+        "[[textures]]\nname=\"marble\"\ntype=\"marble\"\n[[materials]]\nname=\"a\"\ndiffuse=\"marbel\"",
+        7,
+        9,
+        "there is no texture \"marbel\"; did you mean \"marble\"?",
+    ),
+    (
+        "[[textures]]\nname=\"w\"\ntype=\"wood\"\n[[materials]]\nname=\"a\"\nbump={texture=\"w\",height=nan}",
+        7,
+        26,
+        "nan is not finite; give a number",
+    ),
+    ("[[materials]]\nname=\"a\"\n[[materials]]\nname=\"a\"", 5, 6, "names two materials"),
+    // Lights.
+    ("[[lights]]\ntype=\"spot\"\nposition=[0,0,1]\npower=[1,1,1]", 3, 6, "not a type of light"),
+    (
+        "[[lights]]\ntype=\"sun\"\nposition=[0,0,0]\npower=[1,1,1]",
+        2,
+        1,
+        "target: this is the light's own",
+    ),
+    (
+        "[[lights]]\ntype=\"disk\"\nposition=[0,2,0]\ntarget = [0,2,0]\npower=[1,1,1]",
+        5,
+        10,
+        "faces",
+    ),
+    ("[[lights]]\ntype=\"rectangle\"\nposition=[0,0,0]\npower=[1,1,1]", 2, 1, "own position"),
+    ("[[lights]]\ntype=\"point\"\nposition=[0,0,1e13]\npower=[1,1,1]", 4, 15, "stay within 1e12"),
+    ("[[lights]]\ntype=\"point\"\nposition=[0,0,1]\npower=[1,1,-1]", 5, 12, "not a power"),
+    ("[[lights]]\ntype=\"point\"\nposition=[0,0,1]\npower=[1,1,1]\nup=[0,0,0]", 6, 4, "not all 0"),
+    ("[[lights]]\ntype=\"point\"\nposition=[0,0,1]\npower=[1,1,1]\nsize=-1", 6, 6, "of at least 0"),
+    (
+        "[[lights]]\ntype=\"sphere\"\nposition=[0,0,1]\npower=[1,1,1]\nsize=[1,1]",
+        6,
+        6,
+        "one number",
+    ),
+    (
+        "[[lights]]\ntype=\"disk\"\nposition=[0,0,1]\npower=[1,1,1]\nsize=[1,1]",
+        6,
+        6,
+        "its diameter",
+    ),
+    ("[[lights]]\ntype=\"sun\"\nposition=[0,0,1]\npower=[1,1,1]\nsize=180.5", 6, 6, "0 to 180"),
+    ("[[lights]]\ntype=\"rectangle\"\nposition=[0,0,1]\npower=[1,1,1]\nsize=[0,1]", 6, 6, "or 0"),
+    (
+        "[[lights]]\ntype=\"rectangle\"\nposition=[0,0,1]\npower=[1,1,1]\nsize=[]",
+        6,
+        6,
+        "one or two",
+    ),
+    (
+        "[[lights]]\ntype=\"rectangle\"\nposition=[0,0,1]\npower=[1,1,1]\nsize=[1,2,3]",
+        6,
+        6,
+        "or two",
+    ),
+    (
+        "[[lights]]\ntype=\"point\"\nposition=[0,0,1]\npower=[1,1,1]\nvisible=\"no\"",
+        6,
+        9,
+        "a switch",
+    ),
+    (
+        "[[lights]]\ntype=\"point\"\nposition=[0,0,1]\npower=[1,1,1]\nenabled=0",
+        6,
+        9,
+        "true or false",
+    ),
+    (
+        "[[lights]]\nname=\"light-1\"\ntype=\"point\"\nposition=[0,0,1]\npower=[1,1,1]\n\
+         [[lights]]\ntype=\"point\"\nposition=[0,0,1]\npower=[1,1,1]",
+        7,
+        1,
+        "names two lights (the unnamed are light-1, light-2 and so on)",
+    ),
+    // Objects.
+    ("[[objects]]\ntype=\"torus\"", 3, 6, "not a type of object"),
+    ("[[objects]]\ntype=\"sphere\"\ncenter=[0,0,0]\nradius=0", 5, 8, "0 is not a radius"),
+    ("[[objects]]\ntype=\"plane\"\npoint=[0,0,0]\nnormal=[0,0,0]", 5, 8, "not a direction"),
+    ("[[objects]]\ntype=\"box\"\nmin=[0,0,0]\nmax=[1,-1,1]", 5, 5, "is below min [0.0, 0.0, 0.0]"),
+    ("[[objects]]\ntype=\"cone\"\nbase=[0,1,0]\ntip=[0,1,0]\nradius=1", 5, 5, "where the base is"),
+    ("[[objects]]\ntype=\"cylinder\"\nbase=[0,1,0]\ntop=[0,1,0]\nradius=1", 5, 5, "the base is"),
+    ("[[objects]]\ntype=\"mesh\"\nfile=\"\"", 4, 6, "not a file"),
+    ("[[objects]]\ntype=\"mesh\"\nfile=\"a.obj\"\nnormals=\"hard\"", 5, 9, "kind of normals"),
+    ("[[objects]]\ntype=\"mesh\"\nfile=\"a.obj\"\ncrease_angle=181", 5, 14, "from 0 to 180"),
+    ("[[objects]]\ntype=\"mesh\"\nfile=\"a.obj\"\nscale=0", 5, 7, "other than 0"),
+    ("[[objects]]\ntype=\"mesh\"\nfile=\"a.obj\"\nscale=[1,0,1]", 5, 10, "or an array of three"),
+    ("[[objects]]\ntype=\"mesh\"\nfile=\"a.obj\"\nscale=[1,1]", 5, 7, "or an array of three"),
+    (
+        "[[objects]]\ntype=\"mesh\"\nfile=\"a.obj\"\ntranslate=[0,nan,0]",
+        5,
+        14,
+        "[0, nan, 0] is not finite",
+    ),
+    ("[[objects]]\ntype=\"mesh\"\nfile=\"a.obj\"\nrotate=90", 5, 8, "90 is not a rotation"),
+    (
+        "[[objects]]\ntype=\"mesh\"\nfile=\"a.obj\"\nmaterial=\"x\"",
+        5,
+        10,
+        "there is no material \"x\"",
+    ),
+    ("[[objects]]\ntype=\"mesh\"\nfile=\"a.obj\"\nenabled=0", 5, 9, "a switch"),
+    // Used or not, every value must be good.
+    ("[[objects]]\ntype=\"mesh\"\nfile=\"a.obj\"\nradius=-1", 5, 8, "not a radius"),
+    (
+        "[[objects]]\nenabled=false\ntype=\"mesh\"\nfile=\"a.obj\"\ncenter=[0,0,inf]",
+        6,
+        13,
+        "inf] is not finite; give three numbers",
+    ),
+    (
+        "[[objects]]\nname=\"a\"\ntype=\"mesh\"\nfile=\"a\"\n[[objects]]\nname=\"a\"\ntype=\"mesh\"\nfile=\"a\"",
+        7,
+        6,
+        "names two objects; give",
+    ),
+    // Nothing of a file reaches a terminal as it is.
+    ("\"\\u001b[31m\" = 5", 2, 1, "\\U0000001B[31m"),
+    ("[[materials]]\nname=\"\\u001b[2J\"\nior=0", 4, 5, "materials.\"\\U0000001B[2J\".ior"),
+    ("[[objects]]\ntype=\"\\u202ea\"", 3, 6, "\\U0000202Ea"),
+    ("[render]\n\u{1b}[31m", 3, 2, "not TOML"),
+];
+
+#[test]
+fn every_mistake_is_named_with_its_place() {
+    for (snippet, line, column, fragment) in REFUSED {
+        let error = read(snippet).map(|_| ()).expect_err(snippet);
+        println!("{}", error.in_file("scene.toml"));
+        let place = format!("{line}:{column}: ");
+        let text = error.to_string();
+        assert!(text.starts_with(&place), "{snippet}\n{text}\nshould be at {place}");
+        assert!(text.contains(fragment), "{snippet}\n{text}\nshould say {fragment}");
+        assert!(!text.contains(|c: char| c.is_control() || c == '\u{202e}'), "{text:?}");
+        assert!(text.chars().count() < 400, "{text}");
+    }
+}
+
+#[test]
+fn mistakes_of_the_camera_are_named_with_their_place() {
+    for (text, line, column, fragment) in [
+        ("", 1, 1, "camera.eye: this key is required; give three numbers"),
+        ("\n\n[camera]\neye=[0,0,1]", 3, 1, "camera.target: this key is required"),
+        ("[camera]\ntarget=[0,0,1]", 1, 1, "camera.eye: this key is required"),
+        ("camera.eye=[0,0,1]", 1, 1, "camera.target: this key is required"),
+        (
+            "[camera]\neye=[0,0,1]\ntarget=[0,0,1]",
+            3,
+            8,
+            "target: this is where the eye is; give another",
+        ),
+        ("[camera]\neye=[0,0,1]\ntarget=[0,0,1.0000000001]", 3, 8, "is where the eye is"),
+        ("[camera]\neye=[0,0,1]\ntarget=[0,0,0]\nup=[0,0,-3]", 4, 4, "is parallel to the view"),
+        ("[camera]\neye=[0,9,0]\ntarget=[0,0,0]", 1, 1, "camera.up: [0.0, 1.0, 0.0] is parallel"),
+        ("[camera]\neye=[0,0,1]\ntarget=[0,0,0]\nup=[0,0,0]", 4, 4, "not all 0"),
+        ("[camera]\neye=[0,0,1]\ntarget=[0,0,0]\nvertical_fov=180", 4, 14, "above 0 and below 180"),
+        (
+            "[camera]\neye=[0,0,1]\ntarget=[0,0,0]\nvertical_fov=0",
+            4,
+            14,
+            "0 is not an angle of view",
+        ),
+        ("[camera]\neye=[0,0,1]\ntarget=[0,0,0]\naperture_radius=-1", 4, 17, "of at least 0"),
+        ("[camera]\neye=[0,0,1]\ntarget=[0,0,0]\nfocal_distance=0", 4, 16, "above 0"),
+        ("[camera]\neye=[0,0,1]\ntarget=[0,0,0]\naperture_blades=2", 4, 17, "from 3 to 16"),
+        ("[camera]\neye=[0,0,1]\ntarget=[0,0,0]\naperture_blades=17", 4, 17, "0 for a round lens"),
+        ("[camera]\neye=[0,\"a\",1]\ntarget=[0,0,0]", 2, 8, "[0, \"a\", 1] is not a point"),
+        ("\u{feff}[camera]\r\neye=[0,0,1]\r\ntarget=5", 3, 8, "5 is not a point"),
+        ("# é\n[camera]\neyé=1", 3, 3, "not TOML"),
+        ("[camera]\n'é'=1", 2, 1, "camera.\"é\": there is no such key"),
+    ] {
+        let error = parse(text, &[]).map(|_| ()).expect_err(text).to_string();
+        println!("{error}");
+        assert!(error.starts_with(&format!("{line}:{column}: ")), "{text}\n{error}");
+        assert!(error.contains(fragment), "{text}\n{error}\nshould say {fragment}");
+    }
+}
+
+#[test]
+fn what_the_contract_allows_is_taken() {
+    for snippet in [
+        "",
+        "[render]\nseed = 4294967295\nsamples = 1048576\nwidth = 16384\nheight = 1\nmax_depth = 0",
+        "[[lights]]\ntype=\"sun\"\nposition=[0,1,0]\npower=[0,0,0]\nsize=180",
+        "[[lights]]\ntype=\"disk\"\nposition=[0,1,0]\npower=[0,0,0]\nsize=[0.5]",
+        "[[lights]]\ntype=\"rectangle\"\nposition=[0,1,0]\npower=[0,0,0]\nsize=[0,0]",
+        "[[lights]]\ntype=\"rectangle\"\nposition=[0,1,0]\npower=[0,0,0]\nsize=0",
+        "[[lights]]\ntype=\"point\"\nposition=[0,0,0]\npower=[0,0,0]",
+        "[[lights]]\nname=\"\"\ntype=\"sphere\"\nposition=[0,0,0]\npower=[0,0,0]",
+        "[[textures]]\nname=\"c\"\ntype=\"checker\"",
+        "[[textures]]\nname=\"c\"\ntype=\"solid\"\ncolors=[[2,0,0]]\noctaves=3\nfile=\"unused.png\"",
+        "[[objects]]\ntype=\"box\"\nmin=[0,0,0]\nmax=[1,0,1]\nscale=[-1,1,2]\nradius=3",
+        "[[objects]]\ntype=\"sphere\"\ncenter=[1,2,3]\nradius=1\nscale=-1\nfile=\"unused\"",
+        "[[objects]]\ntype=\"mesh\"\nfile=\"a.obj\"\r\nscale=2 # comment\r\n",
+    ] {
+        if let Err(error) = read(snippet) {
+            panic!("{snippet}\n{error}");
+        }
+    }
+}
+
+#[test]
+fn absent_keys_have_the_contracts_defaults() {
+    let scene = read(
+        "[[textures]]\nname='t'\ntype='wood'\n[[materials]]\nname='m'\n\
+         [[lights]]\ntype='point'\nposition=[1,2,3]\npower=[4,5,6]\n\
+         [[objects]]\ntype='mesh'\nfile='a.obj'",
+    )
+    .unwrap();
+    let table = table_of(&scene);
+    for (path, value) in [
+        ("render.width", "1280"),
+        ("render.height", "720"),
+        ("render.samples", "256"),
+        ("render.max_depth", "8"),
+        ("render.integrator", "\"direct\""),
+        ("render.seed", "0"),
+        ("render.filter", "\"box\""),
+        ("render.adaptive", "false"),
+        ("render.sampler", "\"sobol\""),
+        ("camera.up", "[0.0, 1.0, 0.0]"),
+        ("camera.vertical_fov", "40.0"),
+        ("camera.aperture_radius", "0.0"),
+        ("camera.focal_distance", "absent"),
+        ("camera.aperture_blades", "0"),
+        ("tone_mapping.exposure", "0.0"),
+        ("tone_mapping.operator", "\"agx\""),
+        ("environment.ambient", "[0.0, 0.0, 0.0]"),
+        ("environment.background", "[0.0, 0.0, 0.0]"),
+        ("textures.t.scale", "1.0"),
+        ("textures.t.octaves", "6"),
+        ("textures.t.lacunarity", "2.0"),
+        ("textures.t.gain", "0.5"),
+        ("textures.t.distortion", "0.0"),
+        ("textures.t.colors", "absent"),
+        ("materials.m.diffuse", "[0.0, 0.0, 0.0]"),
+        ("materials.m.specular", "[0.0, 0.0, 0.0]"),
+        ("materials.m.alpha_x", "0.15"),
+        ("materials.m.alpha_y", "0.15"),
+        ("materials.m.ward", "\"original\""),
+        ("materials.m.tangent", "[1.0, 0.0, 0.0]"),
+        ("materials.m.reflection", "[0.0, 0.0, 0.0]"),
+        ("materials.m.transmission", "[0.0, 0.0, 0.0]"),
+        ("materials.m.ior", "1.5"),
+        ("materials.m.emission", "[0.0, 0.0, 0.0]"),
+        ("materials.m.bump", "absent"),
+        ("lights.light-1.target", "[0.0, 0.0, 0.0]"),
+        ("lights.light-1.up", "[0.0, 1.0, 0.0]"),
+        ("lights.light-1.size", "0.0"),
+        ("lights.light-1.visible", "true"),
+        ("lights.light-1.enabled", "true"),
+        ("objects.object-1.enabled", "true"),
+        ("objects.object-1.normals", "\"file\""),
+        ("objects.object-1.crease_angle", "180.0"),
+        ("objects.object-1.material", "absent"),
+        ("objects.object-1.translate", "[0.0, 0.0, 0.0]"),
+        ("objects.object-1.rotate", "[0.0, 0.0, 0.0]"),
+        ("objects.object-1.scale", "1.0"),
+    ] {
+        let slot = path.parse::<ParameterPath>().unwrap().resolve(&table).unwrap();
+        let found = slot.get(&table).map_or("absent".into(), words::value_text);
+        assert_eq!(found, value, "{path}");
+    }
+}
+
+#[test]
+fn the_tables_of_keys_and_the_description_say_the_same() {
+    let scene = parse(FULL, &[]).unwrap();
+    let root = table_of(&scene);
+    for section in Section::ALL {
+        let known: Vec<_> = section.keys().iter().map(|key| key.name).collect();
+        let mut written = Vec::new();
+        let value = &root[section.name()];
+        for entry in value.as_array().map_or(std::slice::from_ref(value), |entries| entries) {
+            written.extend(entry.as_table().unwrap().keys().map(String::as_str));
+        }
+        for key in &known {
+            assert!(written.contains(key), "{}: {key} is not in the description", section.name());
+        }
+        for key in written {
+            assert!(known.contains(&key), "{}: {key} is not in the tables", section.name());
+        }
+    }
+    for path in path::all_paths(&root) {
+        let key = path.resolve(&root).unwrap().innermost();
+        let Rule::Word(words) = key.rule else {
+            continue;
+        };
+        for word in words {
+            let mut changed = root.clone();
+            path.resolve(&root).unwrap().set(&mut changed, Value::String((*word).into()));
+            let read = SceneDescription::deserialize(Value::Table(changed));
+            assert!(read.is_ok(), "{path} = {word}: {read:?}");
+        }
+    }
+}
+
+#[test]
+fn the_unnamed_are_counted_among_themselves() {
+    let light = "[[lights]]\ntype='point'\nposition=[0,0,1]\npower=[1,1,1]\n";
+    let scene = read(&format!("{light}name='a'\n{light}{light}name='b'\n{light}")).unwrap();
+    let names: Vec<_> = scene.lights.iter().map(|light| &*light.name).collect();
+    assert_eq!(names, ["a", "light-1", "b", "light-2"], "names of lights");
+}
+
+#[test]
+fn overrides_come_before_validation_and_the_last_one_wins() {
+    let text = "[camera]\neye = [0, 0, 1]\n[render]\nsamples = -3\n[[lights]]\ntype = 'disk'\n\
+                position = [0, 3, 0]\npower = [1, 1, 1]\nsize = 'big'\n\
+                [[materials]]\nname = 'my clay'\n[[textures]]\nname='w'\ntype='wood'";
+    let mut given = sets(&[
+        "render.samples=4",
+        "camera.target=[0, 0, 0]",
+        "lights.light-1.size=[0.5]",
+        "materials.\"my clay\".bump.height=0.1",
+        "materials.'my clay'.bump.texture=w",
+        "materials.'my clay'.diffuse=w",
+        "tone_mapping.exposure=2",
+        "camera.focal_distance=3",
+    ]);
+    given.push(Override::new("--samples", &["render", "samples"], 9));
+    let scene = parse(text, &given).unwrap();
+    assert_eq!(scene.render.samples, 9, "samples");
+    assert_eq!(scene.camera.target, [0.0; 3], "target");
+    assert_eq!(scene.lights[0].size, OneOrTwo::Single([0.5]), "size");
+    assert_eq!(scene.materials[0].bump.as_ref().unwrap().height, 0.1, "height");
+    assert_eq!(scene.materials[0].diffuse, ColorOrTexture::Texture("w".into()), "diffuse");
+    assert_eq!(scene.tone_mapping.exposure, 2.0, "exposure");
+    assert_eq!(scene.camera.focal_distance, Some(3.0), "focal distance");
+}
+
+#[test]
+fn an_override_that_names_nothing_is_apart_from_one_of_a_bad_value() {
+    let text = format!(
+        "{CAMERA}[[materials]]\nname='ceramic'\n[[objects]]\nname='my teapot'\ntype='sphere'\n\
+         center=[0,0,0]\nradius=1"
+    );
+    for (set, names_nothing, says) in [
+        (
+            "rendr.samples=5",
+            true,
+            "--set rendr.samples: there is no section \"rendr\"; did you mean",
+        ),
+        ("render=5", true, "is no parameter; add the name of one: width,"),
+        ("render.sample=5", true, "there is no key \"sample\"; did you mean samples?"),
+        ("materials.cermic.ior=2", true, "no material \"cermic\"; did you mean \"ceramic\"?"),
+        ("materials.x.ior=2", true, "no material \"x\"; known: \"ceramic\""),
+        ("lights.key.size=2", true, "there is no light \"key\""),
+        ("materials.ceramic=2", true, "is no parameter; add the name of one: name, diffuse"),
+        ("materials=2", true, "write materials.NAME.KEY, with the name of a material"),
+        ("camera.eye.x=2", true, "eye is one value and is set as a whole; give three numbers"),
+        ("materials.ceramic.bump.hight=2", true, "there is no key \"hight\"; did you mean height?"),
+        (
+            "materials.ceramic.alpha_x=-2",
+            false,
+            "--set materials.ceramic.alpha_x: -2 is not a rough",
+        ),
+        (
+            "materials.ceramic.diffuse=red",
+            false,
+            "--set materials.ceramic.diffuse: there is no text",
+        ),
+        (
+            "materials.ceramic.bump.height=1",
+            false,
+            "materials.ceramic.bump.texture: this key is required",
+        ),
+        ("render.samples=abc", false, "--set render.samples: \"abc\" is not a number of samples"),
+        (
+            "camera.eye=[0, 1, 0]",
+            false,
+            "--set camera.eye: camera.target: this is where the eye is",
+        ),
+        (
+            "objects.'my teapot'.type=box",
+            false,
+            "--set objects.\"my teapot\".type: objects.\"my teapot\".min: this key is required by type \"box\"",
+        ),
+        ("camera.eye=[0, 1, nan]", false, "[0, 1, nan] is not finite"),
+    ] {
+        let error = parse(&text, &sets(&[set])).map(|_| ()).expect_err(set);
+        println!("{}", error.in_file("scene.toml"));
+        assert_eq!(matches!(error, SceneFileError::Override(_)), names_nothing, "{set}: {error}");
+        assert!(error.to_string().contains(says), "{set}\n{error}\nshould say {says}");
+    }
+}
+
+#[test]
+fn bytes_that_are_not_utf8_are_named_by_line() {
+    let error = text_of(b"[render]\nwidth = 5 # \xff".to_vec()).map(|_| ()).unwrap_err();
+    assert_eq!(
+        error.in_file("a.toml"),
+        "a.toml:2:13: byte 0xff is not UTF-8; save the file in that encoding",
+        "message"
+    );
+}
+
+#[test]
+fn long_files_are_refused_before_they_are_read() {
+    let long = vec![b'#'; LARGEST_FILE as usize + 1];
+    assert!(matches!(text_of(long), Err(SceneFileError::TooLarge)), "read a long file");
+    let file = tempfile::NamedTempFile::new().unwrap();
+    file.as_file().set_len(1 << 40).unwrap();
+    assert!(matches!(read_text(file.path()), Err(SceneFileError::TooLarge)), "read a huge file");
+}
+
+#[test]
+fn a_description_is_judged_as_its_file_would_be() {
+    let mut scene = parse(FULL, &[]).unwrap();
+    assert_eq!(validate(&scene), Ok(()), "the full scene");
+    scene.materials[0].alpha_x = f64::NAN;
+    let invalid = validate(&scene).unwrap_err();
+    assert_eq!(invalid.path, format!("materials.{}.alpha_x", scene.materials[0].name), "{invalid}");
+}
