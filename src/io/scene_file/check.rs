@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use toml::{Table, Value};
 
 use super::keys::{Key, Presence, Rule, Section};
-use super::path::{Step, entry_name};
 use super::range::{Outside, Range};
+use super::slot::{Step, entry_name};
 use super::words::{key_text, nearest, quoted, shown, shown_name, suggestion};
 
 /// A mistake in a scene, and the way to it.

@@ -285,7 +285,6 @@ const OBJECTS: &[Key] = &[
         Required,
         Word(&["mesh", "sphere", "plane", "box", "cone", "cylinder"]),
     ),
-    key("enabled", "a switch", Optional, Flag),
     key("file", "a file", Optional, File),
     key("normals", "a kind of normals", Optional, Word(&["file", "smooth", "flat"])),
     key("crease_angle", "an angle", Optional, Number(Range::CREASE)),
@@ -302,4 +301,5 @@ const OBJECTS: &[Key] = &[
     key("translate", "a shift", Optional, Triple(Range::ANY)),
     key("rotate", "a rotation", Optional, Triple(Range::ANY)),
     key("scale", "a scale", Optional, OneOrThree(Range::NOT_0)),
+    key("enabled", "a switch", Optional, Flag),
 ];

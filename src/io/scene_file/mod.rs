@@ -18,22 +18,31 @@ mod check;
 mod keys;
 mod nesting;
 mod overrides;
+mod parameters;
 mod path;
+#[cfg(test)]
+mod random;
 mod range;
+#[cfg(test)]
+mod refused;
 mod relations;
+mod slot;
 mod source;
 #[cfg(test)]
 mod tests;
 mod words;
+mod write;
 
 pub use keys::{Key, Presence, Rule, Section};
 pub use overrides::{Override, OverrideError};
+pub use parameters::{EditError, get, parameters, with_default, with_value};
 pub use path::{ParameterPath, PathError};
 pub use range::{LARGEST, LARGEST_LIGHT, Outside, Range, SMALLEST};
+pub use write::write;
 
 use check::{Fault, check_shape, check_values, name_the_unnamed};
-use path::{Slot, path_text};
 use relations::check_relations;
+use slot::{Slot, Step, path_text};
 use source::{Position, Source};
 use words::printable;
 
@@ -97,6 +106,12 @@ pub struct Invalid {
     pub message: String,
 }
 
+impl Invalid {
+    fn of(fault: Fault, root: &Table) -> Self {
+        Self { path: path_text(root, &fault.steps), message: fault.message }
+    }
+}
+
 /// The text of a scene file; checks its length before it takes memory.
 pub fn read_text(path: &Path) -> Result<String, SceneFileError> {
     let file = File::open(path)?;
@@ -135,11 +150,7 @@ pub fn parse(text: &str, overrides: &[Override]) -> Result<SceneDescription, Sce
     for given in overrides {
         placed.push((given, given.apply(&mut root)?));
     }
-    check_values(&root).map_err(|fault| located(&fault, &root, &source, &placed))?;
-    let scene = SceneDescription::deserialize(Value::Table(root.clone()))
-        .map_err(|error| at(Position { line: 1, column: 1 }, printable(error.message())))?;
-    check_relations(&scene).map_err(|fault| located(&fault, &root, &source, &placed))?;
-    Ok(scene)
+    scene_of(&root).map_err(|fault| located(&fault, &root, &source, &placed))
 }
 
 /// Whether a description could have come from a file.
@@ -147,7 +158,16 @@ pub fn validate(scene: &SceneDescription) -> Result<(), Invalid> {
     let root = table_of(scene);
     check_values(&root)
         .and_then(|()| check_relations(scene))
-        .map_err(|fault| Invalid { path: path_text(&root, &fault.steps), message: fault.message })
+        .map_err(|fault| Invalid::of(fault, &root))
+}
+
+/// The valid description that a table with all its names holds.
+fn scene_of(root: &Table) -> Result<SceneDescription, Fault> {
+    check_values(root)?;
+    let scene = SceneDescription::deserialize(Value::Table(root.clone()))
+        .map_err(|error| Fault::new(Vec::new(), printable(error.message())))?;
+    check_relations(&scene)?;
+    Ok(scene)
 }
 
 /// A description as the table that a file would hold.
@@ -167,7 +187,7 @@ fn located(
     placed: &[(&Override, Slot)],
 ) -> SceneFileError {
     let message = format!("{}: {}", path_text(root, &fault.steps), fault.message);
-    let from = |steps: &[path::Step]| {
+    let from = |steps: &[Step]| {
         let (given, _) = placed.iter().rev().find(|(_, slot)| steps.starts_with(&slot.steps()))?;
         Some(*given)
     };

@@ -2,7 +2,8 @@
 
 use toml::{Table, Value};
 
-use super::path::{ParameterPath, Slot, end_of_path};
+use super::path::{ParameterPath, end_of_path};
+use super::slot::Slot;
 use super::source::parse_value;
 use super::words::{cut, quoted};
 
@@ -127,7 +128,6 @@ mod tests {
         ] {
             let read = Override::parse(text);
             let error = read.expect_err(text).to_string();
-            println!("{error}");
             assert!(!error.contains(|c: char| c.is_control()), "{error:?}");
         }
         let tower = format!("a.b={}", "[".repeat(100_000));

@@ -13,7 +13,7 @@ use crate::scene::description::{
 
 use super::check::{Fault, missing};
 use super::keys::Section;
-use super::path::Step;
+use super::slot::Step;
 use super::words::{quoted, shown_name, suggestion};
 
 /// Below this, the sine of the angle between two directions counts as 0.

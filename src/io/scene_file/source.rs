@@ -4,7 +4,7 @@ use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Table, Value};
 
 use super::nesting::too_deep;
-use super::path::Step;
+use super::slot::Step;
 use super::words::{cut, printable, quoted};
 
 /// A text that is TOML.
