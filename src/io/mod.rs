@@ -2,5 +2,6 @@
 
 mod excerpt;
 pub mod obj;
+pub mod scene_file;
 
 pub use excerpt::excerpt;
