@@ -1,7 +1,14 @@
 //! Penumbra: see how a picture is made of light.
 
 pub mod color;
-pub mod geometry;
-pub mod io;
 pub mod math;
+pub mod threads;
+
+pub mod brdf;
+pub mod geometry;
+
 pub mod scene;
+
+pub mod io;
+pub mod render;
+pub mod tone_mapping;

@@ -3,5 +3,6 @@
 mod excerpt;
 pub mod mtl;
 pub mod obj;
+pub mod scene_file;
 
 pub use excerpt::excerpt;
