@@ -39,7 +39,7 @@ fn main() -> std::io::Result<()> {
 fn assets() -> Vec<(&'static str, &'static str, Mesh)> {
     vec![
         ("backdrop", "A floor that bends up into a wall", cloth::backdrop()),
-        ("block", "A block with bevelled edges, 1 wide, centred on x and z", solids::block()),
+        ("block", "A block with bevelled edges, 1 high, about the origin", solids::block()),
         ("book-cover", "The boards and the round spine of a book", solids::book_cover()),
         ("book-pages", "The pages of that book", solids::book_pages()),
         ("bowl", "A turned bowl with two walls", tableware::bowl()),
@@ -50,14 +50,15 @@ fn assets() -> Vec<(&'static str, &'static str, Mesh)> {
         ("dandelion", "A dandelion clock: fine hairs on thin stalks", dandelion::dandelion()),
         ("egg", "An egg that stands on its blunt end", tableware::egg()),
         ("flame", "The flame of a candle", tableware::flame()),
+        ("hills", "Hills around a lake whose water stands at y = 0", terrain::hills()),
         ("knot", "A trefoil knot plaited of three strands", knot::plaited_knot()),
+        ("peaks", "A range of mountains behind those hills", terrain::peaks()),
         ("pawn", "A pawn of a chess set", tableware::pawn()),
         ("plate", "A plate with a foot", tableware::plate()),
         ("pyramid", "A pyramid of five vertices on a square of side 2", solids::pyramid()),
         ("ring", "A profiled ring of inner radius 1 about z", tableware::ring()),
         ("shell", "A wentletrap: a coiled shell with thin ribs, on its side", shell::wentletrap()),
         ("teapot", "M. Newell's teapot of 32 Bezier patches, 1975", teapot::teapot()),
-        ("terrain", "Mountains around a lake whose water stands at y = 0", terrain::mountains()),
         ("urn", "An urn with a lid", tableware::urn()),
         ("window", "A window frame with six panes", solids::window()),
     ]

@@ -34,9 +34,9 @@ pub(crate) fn pyramid() -> Mesh {
     mesh.closed()
 }
 
-/// A block 1 x 0.5 x 0.5 with bevels.
+/// A block 0.5 x 1 x 0.5 with bevels, about the origin: wood's rings run about y.
 pub(crate) fn block() -> Mesh {
-    bevelled(dvec3(-0.5, 0.0, -0.25), dvec3(0.5, 0.5, 0.25), 0.025, 3).closed()
+    bevelled(dvec3(-0.25, -0.5, -0.25), dvec3(0.25, 0.5, 0.25), 0.025, 3).closed()
 }
 
 /// A window frame 8 wide and 10 high, its face at z = 0: six panes of two columns and three rows,
