@@ -37,9 +37,9 @@ impl Source {
     /// The name to show and to derive other names from, without folder and ending.
     pub fn stem(&self) -> String {
         match self {
-            Self::File(path) => {
-                path.file_stem().map_or_else(|| "scene".into(), |s| s.to_string_lossy().into_owned())
-            }
+            Self::File(path) => path
+                .file_stem()
+                .map_or_else(|| "scene".into(), |s| s.to_string_lossy().into_owned()),
             Self::Gallery(name) => (*name).to_owned(),
         }
     }
@@ -129,13 +129,9 @@ pub fn load(
     reading.records.extend(opened.mesh_files.iter().cloned());
     reading.all_of(&description).map_err(|failure| match failure {
         AssetFailure::Cancelled => LoadError::Cancelled,
-        AssetFailure::Broken { section, index, message } => scene_error(scene_file::file_fault(
-            &opened.text,
-            overrides,
-            section,
-            index,
-            &message,
-        )),
+        AssetFailure::Broken { section, index, message } => {
+            scene_error(scene_file::file_fault(&opened.text, overrides, section, index, &message))
+        }
     })?;
     Ok(Loaded {
         source: source.clone(),
@@ -285,12 +281,12 @@ impl<'a> Reading<'a> {
             if self.assets.meshes.contains_key(&key) {
                 continue;
             }
-            let broken = |message| AssetFailure::Broken { section: Section::Objects, index, message };
+            let broken =
+                |message| AssetFailure::Broken { section: Section::Objects, index, message };
             let bytes = self.read(&key.file).map_err(|error| broken(error.to_string()))?;
             let label = excerpt(key.file.as_bytes());
-            let asset = self
-                .mesh_of(&key, &bytes)
-                .map_err(|error| broken(format!("{label}: {error}")))?;
+            let asset =
+                self.mesh_of(&key, &bytes).map_err(|error| broken(format!("{label}: {error}")))?;
             self.assets.meshes.insert(key, Arc::new(asset));
         }
         for (index, texture) in description.textures.iter().enumerate() {
@@ -326,8 +322,7 @@ impl<'a> Reading<'a> {
 
     fn image(&mut self, file: &str) -> Result<Image, String> {
         let bytes = self.read(file).map_err(|error| error.to_string())?;
-        image_file::decode(&bytes)
-            .map_err(|error| format!("{}: {error}", excerpt(file.as_bytes())))
+        image_file::decode(&bytes).map_err(|error| format!("{}: {error}", excerpt(file.as_bytes())))
     }
 
     /// The mesh with its libraries' materials; whatever is wrong with those is reported only.
