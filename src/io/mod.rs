@@ -1,8 +1,10 @@
 //! Files: what a scene names, read with every limit checked before memory is taken.
 
 mod excerpt;
+pub mod files;
+pub mod image_file;
 pub mod mtl;
 pub mod obj;
 pub mod scene_file;
 
-pub use excerpt::excerpt;
+pub use excerpt::{excerpt, printable_path};
