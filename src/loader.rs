@@ -338,10 +338,12 @@ impl<'a> Reading<'a> {
         let told = notes.warnings.into_iter().chain(warnings);
         self.report.extend(told.map(|warning| format!("{label}: {warning}")));
         let mut maps: HashMap<String, Option<Arc<Image>>> = HashMap::new();
-        let mut n_materials = 0;
         let mut slots = Vec::with_capacity(materials.len());
         for material in materials {
-            n_materials += usize::from(material != mtl::MtlMaterial::neutral(&*material.name));
+            let Some(material) = material else {
+                slots.push(None);
+                continue;
+            };
             let diffuse_map = material.diffuse_map.and_then(|map| {
                 let file = named(Path::new(&map));
                 if !maps.contains_key(&file) {
@@ -353,11 +355,12 @@ impl<'a> Reading<'a> {
                 }
                 maps.get(&file).cloned().flatten()
             });
-            slots.push(SlotMaterial { description: material.description, diffuse_map });
+            slots.push(Some(SlotMaterial { description: material.description, diffuse_map }));
         }
-        if mesh.uvs.is_empty() && slots.iter().any(|slot| slot.diffuse_map.is_some()) {
+        let has_map = slots.iter().flatten().any(|slot| slot.diffuse_map.is_some());
+        if mesh.uvs.is_empty() && has_map {
             self.report.push(format!("{label}: has no texture coordinates; (0, 0) is used"));
         }
-        Ok(MeshAsset { traced: Arc::new(TracedMesh::new(mesh)), slots, n_materials })
+        Ok(MeshAsset { traced: Arc::new(TracedMesh::new(mesh)), slots })
     }
 }

@@ -83,7 +83,7 @@ impl Counts {
                 counts.vertices += asset.traced.mesh.positions.len();
                 counts.triangles += asset.traced.mesh.triangles.len();
                 if object.material.is_none() {
-                    counts.materials += asset.n_materials;
+                    counts.materials += asset.slots.iter().flatten().count();
                 }
             }
         }
