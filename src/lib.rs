@@ -6,3 +6,5 @@ pub mod math;
 pub mod geometry;
 pub mod io;
 pub mod scene;
+
+pub mod document;
