@@ -1,83 +1,75 @@
-//! Bytes from the disk, and nothing but files of a reasonable size.
+//! Whole files into memory: regular files only, up to a limit.
 
 use std::fs::File;
-use std::io::{self, Read};
-use std::path::Path;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 
 use crate::io::printable_path;
 
-/// Why a file could not be read. Paths are escaped.
+/// Why a file could not be read. The path is escaped where it is shown.
 #[derive(Debug, thiserror::Error)]
-pub enum FileError {
-    /// Nothing has that name.
-    #[error("there is no such file: {path}")]
-    Missing {
-        /// Which.
-        path: String,
-    },
-
-    /// A directory, a device, a pipe: reading it would fail, or never end.
-    #[error("{kind}, not a file: {path}")]
-    NotAFile {
-        /// Which.
-        path: String,
-        /// What it is.
-        kind: &'static str,
-    },
-
-    /// More than the caller can use.
-    #[error("too large: {size} bytes, where at most {limit} are read: {path}")]
-    TooLarge {
-        /// Which.
-        path: String,
-        /// Bytes it has.
-        size: u64,
-        /// Bytes it may have.
-        limit: u64,
-    },
-
-    /// The system does not let us.
-    #[error("cannot be read ({reason}): {path}")]
-    Unreadable {
-        /// Which.
-        path: String,
-        /// What the system says.
-        reason: io::Error,
-    },
+#[error("{}: {reason}", printable_path(.path))]
+pub struct FileError {
+    path: PathBuf,
+    reason: String,
 }
 
-/// Reads a whole file of at most `limit` bytes. Directories, devices and pipes are refused before
-/// they are opened.
+impl FileError {
+    fn new(path: &Path, reason: impl Into<String>) -> Self {
+        Self { path: path.to_owned(), reason: reason.into() }
+    }
+
+    /// Nothing of that name.
+    pub fn not_found(path: &Path) -> Self {
+        Self::new(path, "no such file")
+    }
+
+    /// There, but not what it was.
+    pub fn changed(path: &Path) -> Self {
+        Self::new(path, "has changed since the snapshot was made; put the old file beside the PNG")
+    }
+
+    /// What is wrong, without the path.
+    pub fn reason(&self) -> &str {
+        &self.reason
+    }
+}
+
+/// Reads a regular file of at most `limit` bytes.
+///
+/// # Errors
+/// When it is not there, cannot be read, is a folder or a device, or is longer.
 pub fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
-    let metadata = std::fs::metadata(path).map_err(|reason| io_error(path, reason))?;
+    let system = |error: std::io::Error| match error.kind() {
+        std::io::ErrorKind::NotFound => FileError::not_found(path),
+        _ => FileError::new(path, error.to_string()),
+    };
+    // Before it is opened: opening a pipe would wait for its writer.
+    let metadata = std::fs::metadata(path).map_err(system)?;
+    if metadata.is_dir() {
+        return Err(FileError::new(path, "is a folder; name a file in it"));
+    }
     if !metadata.is_file() {
-        let kind = if metadata.is_dir() { "a directory" } else { "a device or a pipe" };
-        return Err(FileError::NotAFile { path: printable_path(path), kind });
+        return Err(FileError::new(path, "is no regular file"));
     }
-    check_size(path, metadata.len(), limit)?;
-    let file = File::open(path).map_err(|reason| io_error(path, reason))?;
-    // The file may have grown since: one byte more than allowed tells.
-    let mut bytes = Vec::with_capacity(metadata.len() as usize + 1);
-    file.take(limit.saturating_add(1))
-        .read_to_end(&mut bytes)
-        .map_err(|reason| io_error(path, reason))?;
-    check_size(path, bytes.len() as u64, limit)?;
+    let too_long = || {
+        let (length, limit) = (metadata.len() >> 20, limit >> 20);
+        FileError::new(path, format!("is {length} MiB long; at most {limit} MiB are read"))
+    };
+    if metadata.len() > limit {
+        return Err(too_long());
+    }
+    let mut bytes = Vec::new();
+    bytes
+        .try_reserve_exact(metadata.len() as usize)
+        .map_err(|_| FileError::new(path, "does not fit into memory"))?;
+    // One byte more than allowed tells a file that grows.
+    let file = File::open(path).map_err(system)?;
+    file.take(limit + 1).read_to_end(&mut bytes).map_err(system)?;
+    if bytes.len() as u64 > limit {
+        return Err(too_long());
+    }
     Ok(bytes)
-}
-
-fn check_size(path: &Path, size: u64, limit: u64) -> Result<(), FileError> {
-    if limit < size {
-        return Err(FileError::TooLarge { path: printable_path(path), size, limit });
-    }
-    Ok(())
-}
-
-fn io_error(path: &Path, reason: io::Error) -> FileError {
-    let path = printable_path(path);
-    if reason.kind() == io::ErrorKind::NotFound {
-        return FileError::Missing { path };
-    }
-    FileError::Unreadable { path, reason }
 }
 
 #[cfg(test)]
@@ -85,30 +77,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_is_read_up_to_its_limit() {
+    fn what_is_no_readable_file_is_refused_with_its_path() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a");
-        std::fs::write(&path, "12345").unwrap();
-        assert_eq!(read_file(&path, 5).unwrap(), b"12345");
-        let message = read_file(&path, 4).unwrap_err().to_string();
-        assert!(message.starts_with("too large: 5 bytes, where at most 4 are read: "), "{message}");
-        assert!(message.ends_with("a"), "{message}");
-    }
-
-    #[test]
-    fn what_is_not_a_file_is_refused_by_its_kind() {
-        let folder = tempfile::tempdir().unwrap();
-        let message = read_file(folder.path(), 10).unwrap_err().to_string();
-        assert!(message.starts_with("a directory, not a file: "), "{message}");
-        let message = read_file(&folder.path().join("b\u{1b}"), 10).unwrap_err().to_string();
-        assert!(message.starts_with("there is no such file: "), "{message}");
-        assert!(message.ends_with("b\\u{1b}"), "{message}");
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn devices_are_refused_and_endless_ones_do_not_hang() {
-        let message = read_file(Path::new("/dev/zero"), 10).unwrap_err().to_string();
-        assert_eq!(message, "a device or a pipe, not a file: /dev/zero");
+        let missing = read_file(&folder.path().join("a.obj"), 10).unwrap_err().to_string();
+        assert!(missing.ends_with("a.obj: no such file"), "{missing}");
+        let dir = read_file(folder.path(), 10).unwrap_err().to_string();
+        assert!(dir.contains("is a folder"), "{dir}");
+        let path = folder.path().join("long.obj");
+        std::fs::write(&path, [0; 11]).unwrap();
+        let long = read_file(&path, 10).unwrap_err().to_string();
+        assert!(long.contains("at most"), "{long}");
+        assert_eq!(read_file(&path, 11).unwrap(), [0; 11], "within the limit");
+        #[cfg(unix)]
+        {
+            let device = read_file(Path::new("/dev/zero"), 10).unwrap_err().to_string();
+            assert!(device.contains("no regular file"), "{device}");
+        }
     }
 }

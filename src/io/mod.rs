@@ -2,9 +2,13 @@
 
 mod excerpt;
 pub mod files;
+pub mod folder;
+pub mod gallery;
 pub mod image_file;
 pub mod mtl;
 pub mod obj;
+pub mod output;
 pub mod scene_file;
+pub mod snapshot;
 
 pub use excerpt::{excerpt, printable_path};
