@@ -376,6 +376,7 @@ fn mistakes_of_the_camera_are_named_with_their_place() {
         ("[camera]\neye=[0,\"a\",1]\ntarget=[0,0,0]", 2, 8, "[0, \"a\", 1] is not a point"),
         ("\u{feff}[camera]\r\neye=[0,0,1]\r\ntarget=5", 3, 8, "5 is not a point"),
         ("# é\n[camera]\neyé=1", 3, 3, "not TOML"),
+        ("\u{feff}rendr = 1", 1, 1, "there is no section \"rendr\""),
         ("[camera]\n'é'=1", 2, 1, "camera.\"é\": there is no such key"),
     ] {
         let error = parse(text, &[]).map(|_| ()).expect_err(text).to_string();

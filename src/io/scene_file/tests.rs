@@ -171,6 +171,14 @@ fn overrides_come_before_validation_and_the_last_one_wins() {
 }
 
 #[test]
+fn of_two_overrides_the_one_that_counts_is_blamed() {
+    let mut given = sets(&["render.samples=4"]);
+    given.push(Override::new("--samples", &["render", "samples"], 0));
+    let error = parse(CAMERA, &given).map(|_| ()).unwrap_err().to_string();
+    assert!(error.starts_with("--samples render.samples: 0 is not"), "{error}");
+}
+
+#[test]
 fn an_override_that_names_nothing_is_apart_from_one_of_a_bad_value() {
     let text = format!(
         "{CAMERA}[[materials]]\nname='ceramic'\n[[objects]]\nname='my teapot'\ntype='sphere'\n\
