@@ -119,6 +119,7 @@ const REFUSED: &[(&str, usize, usize, &str)] = &[
     ("[render]\nseed = -1", 3, 8, "from 0 to 4294967295"),
     ("[render]\nseed = 4294967296", 3, 8, "4294967296"),
     ("[render]\nseed = 99999999999999999999", 3, 8, "1e20 is not a seed"),
+    ("[render]\nseed = 0xffffffffffffffffff", 3, 8, "\"0xffffffffffffffffff\" is not a seed"),
     ("[render]\nintegrator = \"pth\"", 3, 14, "; did you mean \"path\"?"),
     ("[render]\nfilter = \"gauss\"", 3, 10, "give \"box\""),
     ("[render]\nadaptive = 1", 3, 12, "1 is not a switch; give true or false"),
