@@ -10,6 +10,7 @@ pub mod kd_tree;
 pub mod mesh;
 mod mesh_tree;
 mod nearest;
+pub mod normals;
 mod shape;
 mod surface;
 mod triangle;

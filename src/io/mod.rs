@@ -1,3 +1,14 @@
-//! Files: what is read from the disk and what is written to it.
+//! Files: what a scene names, read with every limit checked before memory is taken.
 
+mod excerpt;
+pub mod files;
+pub mod folder;
+pub mod gallery;
+pub mod image_file;
+pub mod mtl;
+pub mod obj;
+pub mod output;
 pub mod scene_file;
+pub mod snapshot;
+
+pub use excerpt::{excerpt, printable_path};
