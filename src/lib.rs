@@ -1,5 +1,14 @@
-//! Penumbra.
+//! Penumbra: see how a picture is made of light.
 
-pub mod geometry;
+pub mod color;
 pub mod math;
+pub mod threads;
+
+pub mod brdf;
+pub mod geometry;
+
 pub mod scene;
+
+pub mod io;
+pub mod render;
+pub mod tone_mapping;
