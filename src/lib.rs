@@ -12,3 +12,7 @@ pub mod scene;
 pub mod io;
 pub mod render;
 pub mod tone_mapping;
+
+pub mod loader;
+
+pub mod cli;
