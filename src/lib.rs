@@ -14,5 +14,6 @@ pub mod render;
 pub mod tone_mapping;
 
 pub mod loader;
+pub mod session;
 
 pub mod cli;
