@@ -7,7 +7,7 @@ penumbra=${PENUMBRA:-target/release/penumbra}
 
 if [ $# -eq 0 ]; then
     set -- $(basename -s .toml scenes/*.toml)
-    "$penumbra" render assets/icon.toml -o assets/icon.png
+    "$penumbra" render docs/gallery/icon.toml -o assets/icon.png
 fi
 for scene in "$@"; do
     "$penumbra" render "scenes/$scene.toml" -o "docs/gallery/$scene.png" \
