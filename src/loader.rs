@@ -14,7 +14,7 @@ use crate::io::folder::{FileRecord, Folder, LARGEST_ASSET};
 use crate::io::obj::{self, ObjError};
 use crate::io::scene_file::{self, Override, OverrideError, SceneFileError, Section};
 use crate::io::snapshot::{self, RenderRecord, SnapshotError};
-use crate::io::{excerpt, gallery, image_file, mtl};
+use crate::io::{excerpt, gallery, image_file, mtl, printable_path};
 use crate::scene::assets::{Assets, MeshAsset, MeshKey, SlotMaterial};
 use crate::scene::description::{ObjectKind, SceneDescription, TextureKind};
 use crate::scene::image::Image;
@@ -192,7 +192,7 @@ impl Opened {
             }
             Source::File(path) => path,
         };
-        let name = excerpt_name(path);
+        let name = printable_path(path);
         let bytes = read_file(path, LARGEST_ASSET)?;
         if bytes.starts_with(b"\x89PNG") {
             let snapshot = snapshot::read(&bytes, path)
@@ -241,10 +241,6 @@ impl Opened {
         opened.report = reading.report;
         Ok(opened)
     }
-}
-
-fn excerpt_name(path: &Path) -> String {
-    path.to_string_lossy().chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
 /// The files of one scene on their way in; each is read once.
