@@ -1,5 +1,7 @@
-//! Penumbra.
+//! Penumbra: see how a picture is made of light.
+
+pub mod color;
+pub mod math;
 
 pub mod geometry;
-pub mod math;
 pub mod scene;

@@ -1,5 +1,18 @@
 //! Vectors, rays, numbers: what every other floor stands on.
+//!
+//! Vectors are glam's. Everything here is pure arithmetic: no scene, no state.
 
 mod aabb;
+mod batch;
+mod frame;
+pub mod noise;
+pub mod portable;
+pub mod sampler;
+pub mod sobol;
+mod transform;
+pub mod warp;
 
 pub use aabb::Aabb;
+pub use batch::{Ray, RayBatch};
+pub use frame::Frame;
+pub use transform::Transform;

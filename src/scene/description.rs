@@ -179,7 +179,7 @@ impl Default for EnvironmentDescription {
 }
 
 /// A constant colour, or the name of a texture.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum ColorOrTexture {
     /// Linear RGB.
@@ -383,7 +383,7 @@ pub enum LightKind {
 }
 
 /// A number, or an array of one or two.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum OneOrTwo {
     /// The same in both directions.
@@ -527,7 +527,7 @@ pub enum NormalsKind {
 }
 
 /// One factor, or one for each axis.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum OneOrThree {
     /// The same along every axis.

@@ -1,0 +1,82 @@
+//! Rays, one and many.
+
+use glam::Vec3;
+
+/// A half line from `origin` along `direction`, up to parameter `t_max` (exclusive).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where it starts.
+    pub origin: Vec3,
+    /// Where it goes; any length above 0. Distances along the ray are in units of it.
+    pub direction: Vec3,
+    /// Hits count while 0 < t < t_max.
+    pub t_max: f32,
+}
+
+impl Ray {
+    /// A ray without end.
+    pub fn new(origin: Vec3, direction: Vec3) -> Self {
+        Self { origin, direction, t_max: f32::INFINITY }
+    }
+
+    /// The point at parameter `t`.
+    pub fn at(&self, t: f32) -> Vec3 {
+        self.origin + self.direction * t
+    }
+}
+
+/// Many rays, one array a component, so that lanes can load them.
+#[derive(Clone, Debug, Default)]
+pub struct RayBatch {
+    /// x, y and z of the origins.
+    pub origin: [Vec<f32>; 3],
+    /// x, y and z of the directions.
+    pub direction: [Vec<f32>; 3],
+    /// Ends, exclusive.
+    pub t_max: Vec<f32>,
+}
+
+impl RayBatch {
+    /// Appends a ray.
+    #[inline]
+    pub fn push(&mut self, ray: Ray) {
+        for axis in 0..3 {
+            self.origin[axis].push(ray.origin[axis]);
+            self.direction[axis].push(ray.direction[axis]);
+        }
+        self.t_max.push(ray.t_max);
+    }
+
+    /// The ray at `index`.
+    #[inline]
+    pub fn ray(&self, index: usize) -> Ray {
+        Ray {
+            origin: Vec3::new(self.origin[0][index], self.origin[1][index], self.origin[2][index]),
+            direction: Vec3::new(
+                self.direction[0][index],
+                self.direction[1][index],
+                self.direction[2][index],
+            ),
+            t_max: self.t_max[index],
+        }
+    }
+
+    /// Number of rays.
+    pub fn len(&self) -> usize {
+        self.t_max.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.t_max.is_empty()
+    }
+
+    /// Forgets all rays, keeps the memory.
+    pub fn clear(&mut self) {
+        for axis in 0..3 {
+            self.origin[axis].clear();
+            self.direction[axis].clear();
+        }
+        self.t_max.clear();
+    }
+}
