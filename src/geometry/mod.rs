@@ -1,3 +1,235 @@
-//! Shapes, and what a ray meets of them.
+//! Shapes, where they are, and what rays meet of them.
+//!
+//! [`Geometry`] answers three questions about a batch of rays: what each meets first
+//! ([`Geometry::intersect`]), whether anything is in its way ([`Geometry::occluded`]), and how much
+//! light gets through where some objects are clear ([`Geometry::transmittance`]). Every accelerator
+//! gives the same answers to the last bit: of equal distances the lowest primitive wins.
 
+mod instance;
+pub mod kd_tree;
 pub mod mesh;
+mod mesh_tree;
+mod nearest;
+mod shape;
+mod surface;
+mod triangle;
+
+use crate::color::Rgb;
+use crate::geometry::kd_tree::{Item, KdTree, Split, Walk};
+use crate::math::{Aabb, PrimitiveId, Ray, RayBatch};
+
+pub use instance::Instance;
+pub use mesh_tree::{MeshTree, TracedMesh};
+pub use nearest::{Hit, Nearest};
+pub use shape::Shape;
+pub use surface::Surface;
+
+/// How rays find what they meet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum AcceleratorKind {
+    /// kd-tree built by the surface area heuristic.
+    #[default]
+    KdTree,
+    /// kd-tree cut at the middle of the longest side.
+    KdMidpoint,
+    /// Every ray against every triangle: the oracle.
+    BruteForce,
+}
+
+impl AcceleratorKind {
+    /// All kinds.
+    pub const ALL: [Self; 3] = [Self::KdTree, Self::KdMidpoint, Self::BruteForce];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::KdTree => "kd-tree",
+            Self::KdMidpoint => "kd-midpoint",
+            Self::BruteForce => "brute-force",
+        }
+    }
+
+    /// The kind of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+}
+
+/// Size and cost of the trees behind a geometry.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TreeStatistics {
+    /// Inner nodes and leaves; a mesh used twice counts once.
+    pub n_nodes: usize,
+    /// Bytes of nodes and of triangles in leaf order.
+    pub n_bytes: usize,
+    /// Seconds that the builds took.
+    pub build_secs: f64,
+}
+
+/// Every object of a scene, ready for rays.
+#[derive(Debug)]
+pub struct Geometry {
+    instances: Vec<Instance>,
+    kind: AcceleratorKind,
+    /// Over the bounded objects, where there are enough of them.
+    tree: Option<KdTree>,
+    /// Objects that every ray is tested against.
+    listed: Vec<u32>,
+}
+
+impl Geometry {
+    /// Builds whatever trees are missing. `instances` are in the scene's order, which numbers them.
+    pub fn new(instances: Vec<Instance>, kind: AcceleratorKind) -> Self {
+        /// Fewer objects are not worth a tree.
+        const TREE_LIMIT: usize = 8;
+        for instance in &instances {
+            if let Shape::Mesh(mesh) = instance.shape() {
+                mesh.tree(kind);
+            }
+        }
+        let bounded = |id: &u32| instances[*id as usize].bounds().is_some();
+        let (bounded, mut listed): (Vec<u32>, Vec<u32>) =
+            (0..instances.len() as u32).partition(bounded);
+        let split = match kind {
+            AcceleratorKind::KdTree => Some(Split::SurfaceArea),
+            AcceleratorKind::KdMidpoint => Some(Split::Midpoint),
+            AcceleratorKind::BruteForce => None,
+        };
+        let tree = match split {
+            Some(split) if bounded.len() > TREE_LIMIT => {
+                let item = |id: u32| Some(Item { id, bounds: instances[id as usize].bounds()? });
+                let items = bounded.into_iter().filter_map(item).collect();
+                Some(kd_tree::build(items, split, &|id, cell: Aabb| {
+                    instances[id as usize].bounds().unwrap_or(cell).intersection(cell)
+                }))
+            }
+            _ => {
+                listed.extend(bounded);
+                None
+            }
+        };
+        Self { instances, kind, tree, listed }
+    }
+
+    /// The objects, in the scene's order.
+    pub fn instances(&self) -> &[Instance] {
+        &self.instances
+    }
+
+    /// Around every bounded object; `None` without any.
+    pub fn bounds(&self) -> Option<Aabb> {
+        self.instances.iter().filter_map(Instance::bounds).reduce(Aabb::union)
+    }
+
+    /// Size and cost of the trees.
+    pub fn statistics(&self) -> TreeStatistics {
+        let mut statistics = TreeStatistics::default();
+        let mut counted: Vec<*const TracedMesh> = Vec::new();
+        for instance in &self.instances {
+            let Shape::Mesh(mesh) = instance.shape() else { continue };
+            let address = std::sync::Arc::as_ptr(mesh);
+            if !counted.contains(&address) {
+                counted.push(address);
+                let tree = mesh.tree(self.kind);
+                statistics.n_nodes += tree.n_nodes();
+                statistics.n_bytes += tree.n_bytes();
+                statistics.build_secs += tree.build_secs;
+            }
+        }
+        if let Some(tree) = &self.tree {
+            statistics.n_nodes += tree.n_nodes();
+            statistics.n_bytes += tree.n_bytes();
+        }
+        statistics
+    }
+
+    /// What each ray meets first; `hits` is overwritten, one entry a ray.
+    pub fn intersect(&self, rays: &RayBatch, hits: &mut Vec<Option<Hit>>) {
+        hits.clear();
+        hits.extend((0..rays.len()).map(|i| self.intersect_one(&rays.ray(i), |_| true)));
+    }
+
+    /// Whether anything lies between the ends of each ray; `blocked` is overwritten.
+    pub fn occluded(&self, rays: &RayBatch, blocked: &mut Vec<bool>) {
+        blocked.clear();
+        blocked.extend((0..rays.len()).map(|i| self.occluded_one(&rays.ray(i), |_| true)));
+    }
+
+    /// The share of light that passes along each ray where some objects are clear: `clear(object)`
+    /// gives the factor of one surface of an object, or `None` where it is opaque. Factors are
+    /// multiplied in order of distance, then primitive. `shares` is overwritten.
+    pub fn transmittance(
+        &self,
+        rays: &RayBatch,
+        clear: impl Fn(Hit) -> Option<Rgb>,
+        is_clear: impl Fn(u32) -> bool,
+        shares: &mut Vec<Rgb>,
+    ) {
+        shares.clear();
+        shares.extend((0..rays.len()).map(|i| {
+            let ray = rays.ray(i);
+            if self.occluded_one(&ray, |object| !is_clear(object)) {
+                return Rgb::ZERO;
+            }
+            let mut share = Rgb::ONE;
+            let mut after = (0.0, PrimitiveId::NONE);
+            while let Some(hit) = self.next_hit(&ray, after, &is_clear) {
+                let Some(factor) = clear(hit) else { return Rgb::ZERO };
+                share *= factor;
+                if share == Rgb::ZERO {
+                    return share;
+                }
+                after = (hit.t, hit.id);
+            }
+            share
+        }));
+    }
+
+    fn intersect_one(&self, ray: &Ray, take: impl Fn(u32) -> bool) -> Option<Hit> {
+        let mut nearest = Nearest::new(ray);
+        self.collect(ray, take, &mut nearest);
+        nearest.hit()
+    }
+
+    /// The first hit after `after` in the order of distance, then primitive.
+    fn next_hit(
+        &self,
+        ray: &Ray,
+        after: (f32, PrimitiveId),
+        take: impl Fn(u32) -> bool,
+    ) -> Option<Hit> {
+        let mut nearest = Nearest::after(ray, after);
+        self.collect(ray, take, &mut nearest);
+        nearest.hit()
+    }
+
+    fn collect(&self, ray: &Ray, take: impl Fn(u32) -> bool, nearest: &mut Nearest) {
+        for id in self.listed.iter().copied().filter(|id| take(*id)) {
+            self.instances[id as usize].intersect(ray, id, self.kind, nearest);
+        }
+        let Some(tree) = &self.tree else { return };
+        let clipped = Ray { t_max: nearest.t(), ..*ray };
+        let Some(walk) = Walk::new(&clipped, &tree.bounds) else { return };
+        tree.walk(&walk, |range| {
+            for id in tree.items[range].iter().copied().filter(|id| take(*id)) {
+                self.instances[id as usize].intersect(ray, id, self.kind, nearest);
+            }
+            nearest.t()
+        });
+    }
+
+    fn occluded_one(&self, ray: &Ray, take: impl Fn(u32) -> bool) -> bool {
+        let blocks = |id: u32| take(id) && self.instances[id as usize].occluded(ray, id, self.kind);
+        if self.listed.iter().any(|id| blocks(*id)) {
+            return true;
+        }
+        let Some(tree) = &self.tree else { return false };
+        let Some(walk) = Walk::new(ray, &tree.bounds) else { return false };
+        let mut is_blocked = false;
+        tree.walk(&walk, |range| {
+            is_blocked |= tree.items[range].iter().any(|id| blocks(*id));
+            if is_blocked { -1.0 } else { ray.t_max }
+        });
+        is_blocked
+    }
+}

@@ -11,12 +11,28 @@ pub struct Ray {
     pub direction: Vec3,
     /// Hits count while 0 < t < t_max.
     pub t_max: f32,
+    /// The flat primitive that it leaves, which it cannot meet again.
+    pub source: PrimitiveId,
+}
+
+/// Names one primitive of one object: a triangle, a box's face, a whole sphere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PrimitiveId {
+    /// Index of the object in the scene.
+    pub object: u32,
+    /// Index of the primitive in the object.
+    pub primitive: u32,
+}
+
+impl PrimitiveId {
+    /// No primitive at all; after every other in order.
+    pub const NONE: Self = Self { object: u32::MAX, primitive: u32::MAX };
 }
 
 impl Ray {
     /// A ray without end.
     pub fn new(origin: Vec3, direction: Vec3) -> Self {
-        Self { origin, direction, t_max: f32::INFINITY }
+        Self { origin, direction, t_max: f32::INFINITY, source: PrimitiveId::NONE }
     }
 
     /// The point at parameter `t`.
@@ -34,6 +50,8 @@ pub struct RayBatch {
     pub direction: [Vec<f32>; 3],
     /// Ends, exclusive.
     pub t_max: Vec<f32>,
+    /// What each ray leaves.
+    pub source: Vec<PrimitiveId>,
 }
 
 impl RayBatch {
@@ -45,6 +63,7 @@ impl RayBatch {
             self.direction[axis].push(ray.direction[axis]);
         }
         self.t_max.push(ray.t_max);
+        self.source.push(ray.source);
     }
 
     /// The ray at `index`.
@@ -58,6 +77,7 @@ impl RayBatch {
                 self.direction[2][index],
             ),
             t_max: self.t_max[index],
+            source: self.source[index],
         }
     }
 
@@ -78,5 +98,6 @@ impl RayBatch {
             self.direction[axis].clear();
         }
         self.t_max.clear();
+        self.source.clear();
     }
 }

@@ -13,6 +13,6 @@ mod transform;
 pub mod warp;
 
 pub use aabb::Aabb;
-pub use batch::{Ray, RayBatch};
+pub use batch::{PrimitiveId, Ray, RayBatch};
 pub use frame::Frame;
 pub use transform::Transform;

@@ -1,0 +1,118 @@
+//! A shape at its place in the world.
+
+use glam::{DVec3, Vec3};
+
+use crate::geometry::mesh_tree::TracedMesh;
+use crate::geometry::{AcceleratorKind, Nearest, Shape};
+use crate::math::{Aabb, Ray, Transform};
+
+/// A shape and the transform that puts it into the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instance {
+    shape: Shape,
+    transform: Transform,
+    bounds: Option<Aabb>,
+}
+
+impl Instance {
+    /// Puts a shape at its place.
+    pub fn new(shape: Shape, transform: Transform) -> Self {
+        let bounds = shape.bounds().map(|corners| world_bounds(corners, &transform));
+        Self { shape, transform, bounds }
+    }
+
+    /// The shape, in object space.
+    pub fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
+    /// Where it is.
+    pub fn transform(&self) -> &Transform {
+        &self.transform
+    }
+
+    /// Around it in the world, rounded outwards; `None` where it is infinite or empty.
+    pub fn bounds(&self) -> Option<Aabb> {
+        self.bounds
+    }
+
+    /// Takes the nearest hit of a ray of the world into `nearest`.
+    pub(super) fn intersect(
+        &self,
+        ray: &Ray,
+        object: u32,
+        kind: AcceleratorKind,
+        nearest: &mut Nearest,
+    ) {
+        match &self.shape {
+            Shape::Mesh(mesh) => self.with_object_ray(ray, mesh, |ray| {
+                mesh.tree(kind).intersect(ray, object, nearest);
+            }),
+            Shape::Sphere { .. }
+            | Shape::Plane { .. }
+            | Shape::Box { .. }
+            | Shape::Cone { .. }
+            | Shape::Cylinder { .. } => {
+                for (t, primitive) in self.crossings(ray).into_iter().flatten() {
+                    nearest.offer(t as f32, object, primitive);
+                }
+            }
+        }
+    }
+
+    /// Whether the object lies between the ends of a ray of the world.
+    pub(super) fn occluded(&self, ray: &Ray, object: u32, kind: AcceleratorKind) -> bool {
+        match &self.shape {
+            Shape::Mesh(mesh) => {
+                let mut is_blocked = false;
+                self.with_object_ray(ray, mesh, |ray| {
+                    is_blocked = mesh.tree(kind).occluded(ray, object);
+                });
+                is_blocked
+            }
+            Shape::Sphere { .. }
+            | Shape::Plane { .. }
+            | Shape::Box { .. }
+            | Shape::Cone { .. }
+            | Shape::Cylinder { .. } => {
+                let mut nearest = Nearest::new(ray);
+                self.intersect(ray, object, kind, &mut nearest);
+                nearest.is_hit()
+            }
+        }
+    }
+
+    /// Crossings of a solid by a ray of the world, in f64.
+    pub(super) fn crossings(&self, ray: &Ray) -> [Option<(f64, u32)>; 2] {
+        let origin = self.transform.object_from_world_point(ray.origin.as_dvec3());
+        let direction = self.transform.object_from_world_vector(ray.direction.as_dvec3());
+        self.shape.crossings(origin, direction)
+    }
+
+    /// Calls with the ray as the mesh sees it, unless there is nothing to meet.
+    fn with_object_ray(&self, ray: &Ray, mesh: &TracedMesh, call: impl FnOnce(&Ray)) {
+        if mesh.bounds.is_empty() {
+            return;
+        }
+        if self.transform.is_identity() {
+            return call(ray);
+        }
+        let origin = self.transform.object_from_world_point(ray.origin.as_dvec3()).as_vec3();
+        let direction = self.transform.object_from_world_vector(ray.direction.as_dvec3()).as_vec3();
+        if direction != Vec3::ZERO {
+            call(&Ray { origin, direction, ..*ray });
+        }
+    }
+}
+
+fn world_bounds([min, max]: [DVec3; 2], transform: &Transform) -> Aabb {
+    let mut bounds = Aabb::EMPTY;
+    for corner in 0..8 {
+        let pick = |axis: usize| if corner >> axis & 1 == 0 { min[axis] } else { max[axis] };
+        let p = transform.world_from_object_point(DVec3::new(pick(0), pick(1), pick(2)));
+        let p = p.to_array();
+        bounds.min = bounds.min.min(Vec3::from_array(p.map(|x| (x as f32).next_down())));
+        bounds.max = bounds.max.max(Vec3::from_array(p.map(|x| (x as f32).next_up())));
+    }
+    bounds
+}

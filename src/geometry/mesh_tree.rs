@@ -1,0 +1,168 @@
+//! A mesh made ready for rays: its triangles in the order of an accelerator's leaves.
+
+use std::ops::Range;
+use std::sync::OnceLock;
+use std::time::Instant;
+
+use glam::{DVec3, Vec3};
+
+use crate::geometry::kd_tree::{self, Item, KdTree, Split, Walk};
+use crate::geometry::mesh::Mesh;
+use crate::geometry::triangle::ShearedRay;
+use crate::geometry::{AcceleratorKind, Nearest};
+use crate::math::{Aabb, Ray};
+
+/// A mesh with the trees that have been asked for; each is built once, on first use.
+#[derive(Debug)]
+pub struct TracedMesh {
+    /// The arrays.
+    pub mesh: Mesh,
+    /// Around every triangle.
+    pub bounds: Aabb,
+    trees: [OnceLock<MeshTree>; AcceleratorKind::ALL.len()],
+}
+
+impl TracedMesh {
+    /// Takes a mesh; builds nothing yet.
+    pub fn new(mesh: Mesh) -> Self {
+        let bounds = mesh.bounds();
+        Self { mesh, bounds, trees: Default::default() }
+    }
+
+    /// The tree of that kind, built now if it is the first time it is asked for.
+    pub fn tree(&self, kind: AcceleratorKind) -> &MeshTree {
+        self.trees[kind as usize].get_or_init(|| MeshTree::build(&self.mesh, kind))
+    }
+}
+
+/// The triangles of a mesh in the order of an accelerator's leaves.
+#[derive(Debug)]
+pub struct MeshTree {
+    kd_tree: Option<KdTree>,
+    bounds: Aabb,
+    triangles: Vec<Triangle>,
+    /// How long the build took, in seconds.
+    pub build_secs: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Triangle {
+    corners: [Vec3; 3],
+    id: u32,
+}
+
+impl MeshTree {
+    fn build(mesh: &Mesh, kind: AcceleratorKind) -> Self {
+        let start = Instant::now();
+        let split = match kind {
+            AcceleratorKind::KdTree => Some(Split::SurfaceArea),
+            AcceleratorKind::KdMidpoint => Some(Split::Midpoint),
+            AcceleratorKind::BruteForce => None,
+        };
+        let kd_tree = split.map(|split| build_kd_tree(mesh, split));
+        let triangle = |id: u32| Triangle { corners: mesh.corners(id), id };
+        let triangles = match &kd_tree {
+            Some(tree) => tree.items.iter().map(|id| triangle(*id)).collect(),
+            None => (0..mesh.triangles.len() as u32).map(triangle).collect(),
+        };
+        let build_secs = start.elapsed().as_secs_f64();
+        Self { kd_tree, bounds: mesh.bounds(), triangles, build_secs }
+    }
+
+    /// Takes the nearest hit of a ray in object space into `nearest`.
+    pub(super) fn intersect(&self, ray: &Ray, object: u32, nearest: &mut Nearest) {
+        let mut clipped = *ray;
+        clipped.t_max = nearest.t();
+        let sheared = ShearedRay::new(ray);
+        self.visit(&clipped, |triangles| {
+            for triangle in triangles {
+                if let Some(t) = sheared.intersect(triangle.corners) {
+                    nearest.offer(t, object, triangle.id);
+                }
+            }
+            nearest.t()
+        });
+    }
+
+    /// Whether anything but the ray's source lies between its ends.
+    pub(super) fn occluded(&self, ray: &Ray, object: u32) -> bool {
+        let sheared = ShearedRay::new(ray);
+        let mut probe = Nearest::new(ray);
+        self.visit(ray, |triangles| {
+            for triangle in triangles {
+                if let Some(t) = sheared.intersect(triangle.corners) {
+                    probe.offer(t, object, triangle.id);
+                    if probe.is_hit() {
+                        return -1.0;
+                    }
+                }
+            }
+            ray.t_max
+        });
+        probe.is_hit()
+    }
+
+    fn visit(&self, ray: &Ray, mut visit: impl FnMut(&[Triangle]) -> f32) {
+        let Some(walk) = Walk::new(ray, &self.bounds) else { return };
+        match &self.kd_tree {
+            Some(tree) => tree.walk(&walk, |range: Range<usize>| visit(&self.triangles[range])),
+            None => {
+                visit(&self.triangles);
+            }
+        }
+    }
+
+    /// Number of nodes; 0 for brute force.
+    pub fn n_nodes(&self) -> usize {
+        self.kd_tree.as_ref().map_or(0, KdTree::n_nodes)
+    }
+
+    /// Memory of nodes and triangles.
+    pub fn n_bytes(&self) -> usize {
+        size_of_val(&self.triangles[..]) + self.kd_tree.as_ref().map_or(0, KdTree::n_bytes)
+    }
+}
+
+fn build_kd_tree(mesh: &Mesh, split: Split) -> KdTree {
+    let n_triangles = mesh.triangles.len() as u32;
+    let items = (0..n_triangles).map(|id| Item { id, bounds: Aabb::of(mesh.corners(id)) });
+    kd_tree::build(items.collect(), split, &|id, cell| clipped_bounds(mesh.corners(id), &cell))
+}
+
+/// Bounds of the part of a triangle inside a box, rounded outwards.
+///
+/// Source: I. E. Sutherland and G. W. Hodgman, "Reentrant Polygon Clipping", CACM 17(1), 1974.
+fn clipped_bounds(corners: [Vec3; 3], cell: &Aabb) -> Aabb {
+    let (cell_min, cell_max) = (cell.min.as_dvec3(), cell.max.as_dvec3());
+    // A triangle cut by six planes has at most nine corners.
+    let mut polygon = [DVec3::ZERO; 9];
+    let mut n = 3;
+    for (to, from) in polygon.iter_mut().zip(corners) {
+        *to = from.as_dvec3();
+    }
+    for axis in 0..3 {
+        for (plane, sign) in [(cell_min[axis], 1.0), (cell_max[axis], -1.0)] {
+            let from = polygon;
+            let n_from = n;
+            n = 0;
+            for i in 0..n_from {
+                let (a, b) = (from[i], from[(i + 1) % n_from]);
+                let (da, db) = (sign * (a[axis] - plane), sign * (b[axis] - plane));
+                if da >= 0.0 {
+                    polygon[n] = a;
+                    n += 1;
+                }
+                if (da < 0.0 && db > 0.0) || (da > 0.0 && db < 0.0) {
+                    polygon[n] = a + (b - a) * (da / (da - db));
+                    n += 1;
+                }
+            }
+        }
+    }
+    let mut bounds = Aabb::EMPTY;
+    for p in &polygon[..n] {
+        bounds.min = bounds.min.min(Vec3::from_array(p.to_array().map(|x| (x as f32).next_down())));
+        bounds.max = bounds.max.max(Vec3::from_array(p.to_array().map(|x| (x as f32).next_up())));
+    }
+    bounds
+}
