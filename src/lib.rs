@@ -2,6 +2,11 @@
 
 pub mod color;
 pub mod math;
+pub mod threads;
 
+pub mod brdf;
 pub mod geometry;
+
 pub mod scene;
+
+pub mod render;

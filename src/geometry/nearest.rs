@@ -22,11 +22,7 @@ pub struct Nearest {
 impl Nearest {
     /// Nothing found yet.
     pub fn new(ray: &Ray) -> Self {
-        Self {
-            best: Hit { t: ray.t_max, id: PrimitiveId::NONE },
-            source: ray.source,
-            after: None,
-        }
+        Self { best: Hit { t: ray.t_max, id: PrimitiveId::NONE }, source: ray.source, after: None }
     }
 
     /// Only what comes after a hit, in the order of distance, then primitive.

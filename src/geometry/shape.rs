@@ -170,7 +170,9 @@ impl Shape {
                 let axis = *tip - *base;
                 let height = axis.length();
                 let local = Axial::new(origin - *base, direction, axis / height);
-                local.in_slab(height).and_then(|slab| Some(slab.and(local.in_cone(height, *radius)?)))
+                local
+                    .in_slab(height)
+                    .and_then(|slab| Some(slab.and(local.in_cone(height, *radius)?)))
             }
         };
         match stay {
@@ -313,7 +315,8 @@ mod tests {
                 previous = t;
             }
             // Brute force: the line is inside somewhere exactly when there are crossings.
-            let meets = (0..=4000).any(|k| inside(origin + direction * (f64::from(k) * 5e-4)) < -0.01);
+            let meets =
+                (0..=4000).any(|k| inside(origin + direction * (f64::from(k) * 5e-4)) < -0.01);
             assert!(!meets || crossings[1].is_some(), "{shape:?}: missed ray {i}");
         }
         assert!(n_hits > 500, "{shape:?}: only {n_hits} crossings");
@@ -337,11 +340,8 @@ mod tests {
 
     #[test]
     fn bounds_of_tilted_solids_are_tight() {
-        let shape = Shape::Cylinder {
-            base: DVec3::ZERO,
-            top: DVec3::new(1.0, 1.0, 0.0),
-            radius: 1.0,
-        };
+        let shape =
+            Shape::Cylinder { base: DVec3::ZERO, top: DVec3::new(1.0, 1.0, 0.0), radius: 1.0 };
         let [min, max] = shape.bounds().unwrap();
         let reach = 0.5_f64.sqrt();
         assert!((min - DVec3::new(-reach, -reach, -1.0)).length() < 1e-12, "{min}");

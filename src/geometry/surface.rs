@@ -102,7 +102,8 @@ fn local_surface(instance: &Instance, ray: &Ray, hit: Hit) -> Local {
     }
     // The hit's parameter was rounded to f32; find it again in full.
     let crossings = shape.crossings(origin, direction).into_iter().flatten();
-    let exact = crossings.filter(|(t, primitive)| *primitive == hit.id.primitive && *t as f32 == hit.t);
+    let exact =
+        crossings.filter(|(t, primitive)| *primitive == hit.id.primitive && *t as f32 == hit.t);
     let t = exact.map(|(t, _)| t).next().unwrap_or(f64::from(hit.t));
     on_solid(shape, hit.id.primitive, origin + direction * t)
 }

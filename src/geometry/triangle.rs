@@ -11,7 +11,7 @@ use crate::math::Ray;
 /// What the test needs of a ray, computed once: the permutation of axes that makes z the largest
 /// component of the direction, and the shear that makes the direction (0, 0, 1).
 #[derive(Clone, Copy, Debug)]
-pub struct ShearedRay {
+pub(super) struct ShearedRay {
     origin: [f32; 3],
     axes: [usize; 3],
     shear: [f32; 3],
@@ -19,7 +19,7 @@ pub struct ShearedRay {
 
 impl ShearedRay {
     /// Prepares a ray whose direction is not zero.
-    pub fn new(ray: &Ray) -> Self {
+    pub(super) fn new(ray: &Ray) -> Self {
         let d = ray.direction.to_array();
         let a = ray.direction.abs();
         let z = if a.x > a.y {
@@ -40,7 +40,7 @@ impl ShearedRay {
     /// Parameter of the hit, of either sign and not compared with the ray's end; `None` where the
     /// line misses the triangle or lies in its plane.
     #[inline]
-    pub fn intersect(&self, corners: [Vec3; 3]) -> Option<f32> {
+    pub(super) fn intersect(&self, corners: [Vec3; 3]) -> Option<f32> {
         let [kx, ky, kz] = self.axes;
         let [sx, sy, sz] = self.shear;
         let relative = corners.map(|c| {

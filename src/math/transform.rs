@@ -26,7 +26,8 @@ impl Transform {
     /// translate + Rz Ry Rx (scale p); `rotate_deg` about the fixed axes X, then Y, then Z.
     /// No component of `scale` may be 0.
     pub fn new(translate: DVec3, rotate_deg: DVec3, scale: DVec3) -> Self {
-        let rotation = rotation_z(rotate_deg.z) * rotation_y(rotate_deg.y) * rotation_x(rotate_deg.x);
+        let rotation =
+            rotation_z(rotate_deg.z) * rotation_y(rotate_deg.y) * rotation_x(rotate_deg.x);
         let linear = rotation * DMat3::from_diagonal(scale);
         let inverse = DMat3::from_diagonal(scale.recip()) * rotation.transpose();
         let is_identity = linear == DMat3::IDENTITY && translate == DVec3::ZERO;

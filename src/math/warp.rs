@@ -71,9 +71,8 @@ mod tests {
     use super::*;
 
     fn grid(n: u32) -> impl Iterator<Item = [f32; 2]> {
-        (0..n * n).map(move |i| {
-            [((i % n) as f32 + 0.5) / n as f32, ((i / n) as f32 + 0.5) / n as f32]
-        })
+        (0..n * n)
+            .map(move |i| [((i % n) as f32 + 0.5) / n as f32, ((i / n) as f32 + 0.5) / n as f32])
     }
 
     #[test]

@@ -91,11 +91,8 @@ impl<C: Fn(u32, Aabb) -> Aabb + Sync> Builder<'_, C> {
         upper_cell.min[cut.axis] = cut.plane;
         let lower = || self.node(lower_items, lower_cell, depth_left - 1, n_bad);
         let upper = || self.node(upper_items, upper_cell, depth_left - 1, n_bad);
-        let (lower, upper) = if n_items > PARALLEL_LIMIT {
-            rayon::join(lower, upper)
-        } else {
-            (lower(), upper())
-        };
+        let (lower, upper) =
+            if n_items > PARALLEL_LIMIT { rayon::join(lower, upper) } else { (lower(), upper()) };
         BuildNode::Inner { axis: cut.axis, plane: cut.plane, children: Box::new([lower, upper]) }
     }
 

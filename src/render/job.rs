@@ -1,0 +1,57 @@
+//! What to render: a value that determines every pixel to the last bit.
+
+use std::sync::Arc;
+
+use crate::geometry::AcceleratorKind;
+use crate::math::sampler::Sampler;
+use crate::scene::Scene;
+use crate::scene::description::{IntegratorKind, RenderDescription, SamplerKind};
+
+/// A picture to be made. Two equal jobs have equal pixels for equal sample counts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RenderJob {
+    /// What is seen.
+    pub scene: Arc<Scene>,
+    /// Width in pixels, at least 1.
+    pub width: u32,
+    /// Height in pixels, at least 1.
+    pub height: u32,
+    /// How light is followed.
+    pub settings: RenderSettings,
+}
+
+/// How light is followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RenderSettings {
+    /// Which paths.
+    pub integrator: IntegratorKind,
+    /// Where the numbers come from, with their seed.
+    pub sampler: Sampler,
+    /// Scattering events after the camera ray.
+    pub max_depth: u32,
+    /// How rays find what they meet; changes no pixel.
+    pub accelerator: AcceleratorKind,
+}
+
+impl RenderSettings {
+    /// The settings of a scene file.
+    pub fn new(render: &RenderDescription, accelerator: AcceleratorKind) -> Self {
+        let seed = render.seed;
+        let sampler = match render.sampler {
+            SamplerKind::Sobol => Sampler::Sobol { seed },
+            SamplerKind::Random => Sampler::Random { seed },
+        };
+        Self { integrator: render.integrator, sampler, max_depth: render.max_depth, accelerator }
+    }
+}
+
+impl RenderJob {
+    /// The same view in a picture smaller by `scale` (at least 1), rounded up.
+    pub fn coarse(&self, scale: u32) -> Self {
+        Self {
+            width: self.width.div_ceil(scale),
+            height: self.height.div_ceil(scale),
+            ..self.clone()
+        }
+    }
+}

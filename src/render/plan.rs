@@ -1,0 +1,99 @@
+//! How a picture is cut into tiles and its samples into passes: pure arithmetic.
+
+/// Side of a tile in pixels.
+pub const TILE_SIZE: u32 = 16;
+
+/// A rectangle of pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tile {
+    /// First column.
+    pub x: u32,
+    /// First row.
+    pub y: u32,
+    /// Columns, at least 1.
+    pub width: u32,
+    /// Rows, at least 1.
+    pub height: u32,
+}
+
+impl Tile {
+    /// Rows from top to bottom.
+    pub fn rows(&self) -> std::ops::Range<u32> {
+        self.y..self.y + self.height
+    }
+
+    /// Pixels, row by row.
+    pub fn pixels(&self) -> impl Iterator<Item = (u32, u32)> {
+        let (x, width) = (self.x, self.width);
+        self.rows().flat_map(move |y| (x..x + width).map(move |x| (x, y)))
+    }
+}
+
+/// All tiles of a picture, row by row.
+pub fn tiles(width: u32, height: u32) -> Vec<Tile> {
+    let starts = |length: u32| (0..length).step_by(TILE_SIZE as usize);
+    let tile = |x: u32, y: u32| Tile {
+        x,
+        y,
+        width: TILE_SIZE.min(width - x),
+        height: TILE_SIZE.min(height - y),
+    };
+    starts(height).flat_map(|y| starts(width).map(move |x| tile(x, y))).collect()
+}
+
+/// Samples of the next pass: 1, 1, 2, 4, 8, then 16 at a time. A pass ends at `goal`, and at every
+/// power of two, where the noise is read.
+pub fn pass_samples(n_samples: u32, goal: u32) -> u32 {
+    const LARGEST: u32 = 16;
+    let size = n_samples.clamp(1, LARGEST);
+    let next_power = (n_samples + 1).next_power_of_two();
+    size.min(next_power - n_samples).min(goal.saturating_sub(n_samples))
+}
+
+/// By how much a preview is smaller than the picture: the least power of two up to 64 at which one
+/// sample a pixel fits `budget_secs`, at a measured number of samples a second.
+pub fn preview_scale(n_pixels: u64, samples_per_sec: f64, budget_secs: f64) -> u32 {
+    let affordable = samples_per_sec * budget_secs;
+    let fits = |scale: &u32| n_pixels as f64 / f64::from(scale * scale) <= affordable;
+    [1, 2, 4, 8, 16, 32].into_iter().find(fits).unwrap_or(64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_every_pixel_once() {
+        for (width, height) in [(1, 1), (16, 16), (17, 33), (100, 3)] {
+            let mut seen = vec![0; (width * height) as usize];
+            for (x, y) in tiles(width, height).iter().flat_map(Tile::pixels) {
+                seen[(y * width + x) as usize] += 1;
+            }
+            assert!(seen.iter().all(|n| *n == 1), "{width} x {height}: {seen:?}");
+        }
+    }
+
+    #[test]
+    fn passes_reach_the_goal_and_stop_at_powers_of_two() {
+        for goal in [1, 2, 3, 7, 64, 100, 257] {
+            let (mut n, mut stops) = (0, Vec::new());
+            while n < goal {
+                n += pass_samples(n, goal);
+                stops.push(n);
+            }
+            assert_eq!(n, goal, "{stops:?}");
+            let mut power = 1;
+            while power <= goal {
+                assert!(stops.contains(&power), "{power} is no stop of {stops:?}");
+                power *= 2;
+            }
+        }
+    }
+
+    #[test]
+    fn previews_fit_their_budget() {
+        assert_eq!(preview_scale(1_000_000, 1e9, 0.02), 1, "fast enough for all");
+        assert_eq!(preview_scale(921_600, 5e6, 0.02), 4, "57600 of 100000");
+        assert_eq!(preview_scale(921_600, 1.0, 0.02), 64, "never coarser than 64");
+    }
+}

@@ -1,0 +1,68 @@
+//! A thin-lens camera.
+
+use glam::{DVec3, Vec2, Vec3};
+
+use crate::math::{Ray, portable, warp};
+
+/// A lens in the world and the plane it is focused on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Centre of the lens.
+    pub eye: Vec3,
+    /// Unit viewing direction.
+    pub forward: Vec3,
+    /// Unit direction of image x.
+    pub right: Vec3,
+    /// Unit direction against image y.
+    pub up: Vec3,
+    /// Tangent of half the vertical angle of view.
+    pub tan_half_fov: f32,
+    /// Radius of the lens, at least 0.
+    pub aperture_radius: f32,
+    /// Distance along `forward` of the plane in focus, above 0.
+    pub focal_distance: f32,
+    /// 0 is a round lens, else the corners of its polygon.
+    pub aperture_blades: u32,
+}
+
+impl Camera {
+    /// Looks from `eye` to `target`. `vertical_fov` is the full angle in radians; `up` is not
+    /// parallel to the viewing direction.
+    pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, vertical_fov: f64) -> Self {
+        let forward = (target - eye).normalize();
+        let right = forward.cross(up).normalize();
+        Self {
+            eye: eye.as_vec3(),
+            forward: forward.as_vec3(),
+            right: right.as_vec3(),
+            up: right.cross(forward).as_vec3(),
+            tan_half_fov: portable::tan_f64(0.5 * vertical_fov) as f32,
+            aperture_radius: 0.0,
+            focal_distance: (target - eye).length() as f32,
+            aperture_blades: 0,
+        }
+    }
+
+    /// Direction of the pinhole ray at (x, y) in pixels, y down, of a picture of that size; its
+    /// component along `forward` is 1.
+    pub fn pinhole_direction(&self, at: Vec2, size: Vec2) -> Vec3 {
+        let x = (2.0 * at.x / size.x - 1.0) * (size.x / size.y);
+        let y = 1.0 - 2.0 * at.y / size.y;
+        self.forward + self.tan_half_fov * (x * self.right + y * self.up)
+    }
+
+    /// The ray from a point of the lens through the point of the plane of focus that the pinhole
+    /// ray at (x, y) meets. `lens` is a pair of numbers in [0, 1). Direction not normalised.
+    pub fn ray(&self, at: Vec2, size: Vec2, lens: [f32; 2]) -> Ray {
+        let direction = self.pinhole_direction(at, size);
+        if self.aperture_radius == 0.0 {
+            return Ray::new(self.eye, direction);
+        }
+        let p = match self.aperture_blades {
+            0 => warp::square_to_disk(lens),
+            blades => warp::square_to_polygon(lens, blades),
+        };
+        let offset = self.aperture_radius * (p.x * self.right + p.y * self.up);
+        Ray::new(self.eye + offset, direction * self.focal_distance - offset)
+    }
+}

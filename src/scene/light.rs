@@ -1,0 +1,319 @@
+//! Sources of light, sampled from a point that they shine on.
+
+use std::f32::consts::{PI, TAU};
+
+use glam::Vec3;
+
+use crate::color::Rgb;
+use crate::math::{Frame, Ray, portable, warp};
+
+/// A source of light. Never blocks light; seen by the camera only if `visible`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// Whether the camera, mirrors, glass and scattered rays see it.
+    pub visible: bool,
+    /// Shape and strength.
+    pub emitter: Emitter,
+}
+
+/// Shape and strength of a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Emitter {
+    /// One-sided Lambertian rectangle.
+    Rectangle {
+        /// Its centre.
+        center: Vec3,
+        /// x along the width, y along the height, z towards the emitting side.
+        frame: Frame,
+        /// Half the width and half the height.
+        half: [f32; 2],
+        /// Emitted radiance.
+        radiance: Rgb,
+    },
+    /// One-sided Lambertian disk.
+    Disk {
+        /// Its centre.
+        center: Vec3,
+        /// z towards the emitting side.
+        frame: Frame,
+        /// Its radius.
+        radius: f32,
+        /// Emitted radiance.
+        radiance: Rgb,
+    },
+    /// Shines outwards.
+    Sphere {
+        /// Its centre.
+        center: Vec3,
+        /// Its radius.
+        radius: f32,
+        /// Emitted radiance.
+        radiance: Rgb,
+    },
+    /// A point, the same in all directions.
+    Point {
+        /// Where it is.
+        position: Vec3,
+        /// Radiant intensity.
+        intensity: Rgb,
+    },
+    /// The limit of a small rectangle or disk: intensity falls with the cosine.
+    Spot {
+        /// Where it is.
+        position: Vec3,
+        /// Unit direction of the emitting side.
+        normal: Vec3,
+        /// Radiant intensity along `normal`.
+        intensity: Rgb,
+    },
+    /// Parallel light.
+    Sun {
+        /// Unit direction towards it.
+        towards: Vec3,
+        /// Irradiance of a surface that faces it.
+        irradiance: Rgb,
+    },
+    /// A uniform cap of the sky.
+    SunCap {
+        /// z towards its centre.
+        frame: Frame,
+        /// 1 - cosine of its angular radius, 0..=1.
+        one_minus_cos: f32,
+        /// Emitted radiance.
+        radiance: Rgb,
+    },
+}
+
+/// One way from a point to a light.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSample {
+    /// Unit direction towards the light.
+    pub direction: Vec3,
+    /// From the point to the light, so that parameter 1 is the light; for suns the unit direction.
+    pub reach: Vec3,
+    /// 1 for lights at a place, infinite for suns.
+    pub t_max: f32,
+    /// Unit normal of the light's surface there, where it has one: the end of a shadow ray is kept
+    /// clear along it.
+    pub normal: Option<Vec3>,
+    /// Radiance over density: times the BRDF and the cosine, an estimate of the light's share.
+    pub weight: Rgb,
+    /// Density of the direction per solid angle; `None` for points and parallel light, which no
+    /// other ray can find.
+    pub pdf: Option<f32>,
+}
+
+impl Light {
+    /// Samples the light from `from` with two numbers in [0, 1). `None` where nothing arrives.
+    pub fn sample(&self, from: Vec3, u: [f32; 2]) -> Option<LightSample> {
+        match self.emitter {
+            Emitter::Rectangle { center, frame, half: [a, b], radiance } => {
+                let (x, y) = (a * (2.0 * u[0] - 1.0), b * (2.0 * u[1] - 1.0));
+                let point = center + frame.x * x + frame.y * y;
+                from_area(from, point, frame.z, 4.0 * a * b, radiance)
+            }
+            Emitter::Disk { center, frame, radius, radiance } => {
+                let p = warp::square_to_disk(u) * radius;
+                let point = center + frame.x * p.x + frame.y * p.y;
+                from_area(from, point, frame.z, PI * radius * radius, radiance)
+            }
+            Emitter::Sphere { center, radius, radiance } => {
+                let one_minus_cos = sphere_cap(from, center, radius)?;
+                let axis = (center - from).normalize();
+                let local = warp::square_to_cap(u, one_minus_cos);
+                let direction = Frame::from_normal(axis).world_from_local(local);
+                let (t, normal) = nearest_of_sphere(from, direction, center, radius)
+                    .unwrap_or_else(|| tangent_of_sphere(from, direction, center));
+                let pdf = 1.0 / (TAU * one_minus_cos);
+                Some(LightSample {
+                    direction,
+                    reach: direction * t,
+                    t_max: 1.0,
+                    normal: Some(normal),
+                    weight: radiance / pdf,
+                    pdf: Some(pdf),
+                })
+            }
+            Emitter::Point { position, intensity } => from_point(from, position, |_| intensity),
+            Emitter::Spot { position, normal, intensity } => {
+                from_point(from, position, |d| intensity * (-normal.dot(d)).max(0.0))
+            }
+            Emitter::Sun { towards, irradiance } => Some(LightSample {
+                direction: towards,
+                reach: towards,
+                t_max: f32::INFINITY,
+                normal: None,
+                weight: irradiance,
+                pdf: None,
+            }),
+            Emitter::SunCap { frame, one_minus_cos, radiance } => {
+                let direction = frame.world_from_local(warp::square_to_cap(u, one_minus_cos));
+                let pdf = 1.0 / (TAU * one_minus_cos);
+                Some(LightSample {
+                    direction,
+                    reach: direction,
+                    t_max: f32::INFINITY,
+                    normal: None,
+                    weight: radiance / pdf,
+                    pdf: Some(pdf),
+                })
+            }
+        }
+    }
+
+    /// Where a ray meets the light from its emitting side: the parameter (infinite for suns) and
+    /// the radiance. Lights without extent are never met.
+    pub fn intersect(&self, ray: &Ray) -> Option<(f32, Rgb)> {
+        let (origin, direction) = (ray.origin, ray.direction);
+        let met = |t: f32, radiance: Rgb| (t > 0.0 && t < ray.t_max).then_some((t, radiance));
+        match self.emitter {
+            Emitter::Rectangle { center, frame, half, radiance } => {
+                let (t, p) = meet_front(origin, direction, center, &frame)?;
+                let is_inside = p.x.abs() <= half[0] && p.y.abs() <= half[1];
+                is_inside.then(|| met(t, radiance)).flatten()
+            }
+            Emitter::Disk { center, frame, radius, radiance } => {
+                let (t, p) = meet_front(origin, direction, center, &frame)?;
+                (p.x * p.x + p.y * p.y <= radius * radius).then(|| met(t, radiance)).flatten()
+            }
+            Emitter::Sphere { center, radius, radiance } => {
+                sphere_cap(origin, center, radius)?;
+                let (t, _) = nearest_of_sphere(origin, direction, center, radius)?;
+                met(t, radiance)
+            }
+            Emitter::SunCap { frame, one_minus_cos, radiance } => {
+                let d = direction.normalize();
+                let is_inside = 0.5 * (d - frame.z).length_squared() <= one_minus_cos;
+                (is_inside && ray.t_max == f32::INFINITY).then_some((f32::INFINITY, radiance))
+            }
+            Emitter::Point { .. } | Emitter::Spot { .. } | Emitter::Sun { .. } => None,
+        }
+    }
+
+    /// Unit normal of the light's surface at a point of it, where it has one.
+    pub fn normal_at(&self, point: Vec3) -> Option<Vec3> {
+        match self.emitter {
+            Emitter::Rectangle { frame, .. } | Emitter::Disk { frame, .. } => Some(frame.z),
+            Emitter::Sphere { center, .. } => (point - center).try_normalize(),
+            Emitter::Point { .. }
+            | Emitter::Spot { .. }
+            | Emitter::Sun { .. }
+            | Emitter::SunCap { .. } => None,
+        }
+    }
+
+    /// Density per solid angle with which [`Light::sample`] finds what a ray from `from` along the
+    /// unit `direction` meets at distance `t`; 0 for lights without extent.
+    pub fn pdf(&self, from: Vec3, direction: Vec3, t: f32) -> f32 {
+        let of_area = |normal: Vec3, area: f32| {
+            let cos = -normal.dot(direction);
+            if cos > 0.0 { t * t / (cos * area) } else { 0.0 }
+        };
+        match self.emitter {
+            Emitter::Rectangle { frame, half, .. } => of_area(frame.z, 4.0 * half[0] * half[1]),
+            Emitter::Disk { frame, radius, .. } => of_area(frame.z, PI * radius * radius),
+            Emitter::Sphere { center, radius, .. } => {
+                sphere_cap(from, center, radius).map_or(0.0, |cap| 1.0 / (TAU * cap))
+            }
+            Emitter::SunCap { one_minus_cos, .. } => 1.0 / (TAU * one_minus_cos),
+            Emitter::Point { .. } | Emitter::Spot { .. } | Emitter::Sun { .. } => 0.0,
+        }
+    }
+}
+
+fn from_area(
+    from: Vec3,
+    point: Vec3,
+    normal: Vec3,
+    area: f32,
+    radiance: Rgb,
+) -> Option<LightSample> {
+    let reach = point - from;
+    let distance2 = reach.length_squared();
+    let direction = reach / distance2.sqrt();
+    let cos = -normal.dot(direction);
+    if !(cos > 0.0 && distance2 > 0.0) {
+        return None;
+    }
+    let pdf = distance2 / (cos * area);
+    Some(LightSample {
+        direction,
+        reach,
+        t_max: 1.0,
+        normal: Some(normal),
+        weight: radiance / pdf,
+        pdf: Some(pdf),
+    })
+}
+
+fn from_point(from: Vec3, position: Vec3, intensity: impl Fn(Vec3) -> Rgb) -> Option<LightSample> {
+    let reach = position - from;
+    let distance2 = reach.length_squared();
+    if distance2 <= 0.0 {
+        return None;
+    }
+    let direction = reach / distance2.sqrt();
+    let weight = intensity(direction) / distance2;
+    Some(LightSample { direction, reach, t_max: 1.0, normal: None, weight, pdf: None })
+}
+
+/// Where a ray meets a plane from its front: the parameter, and the place in its frame.
+fn meet_front(origin: Vec3, direction: Vec3, center: Vec3, frame: &Frame) -> Option<(f32, Vec3)> {
+    let cos = frame.z.dot(direction);
+    if cos >= 0.0 {
+        return None;
+    }
+    let t = frame.z.dot(center - origin) / cos;
+    Some((t, frame.local_from_world(origin + direction * t - center)))
+}
+
+/// 1 - cosine of the angle that a sphere fills; `None` from inside or on it.
+fn sphere_cap(from: Vec3, center: Vec3, radius: f32) -> Option<f32> {
+    let distance2 = (center - from).length_squared();
+    let sin2 = radius * radius / distance2;
+    (sin2 < 1.0).then(|| sin2 / (1.0 + (1.0 - sin2).sqrt()))
+}
+
+/// Nearest meeting of a ray with a sphere, from outside: the parameter and the unit normal.
+fn nearest_of_sphere(
+    origin: Vec3,
+    direction: Vec3,
+    center: Vec3,
+    radius: f32,
+) -> Option<(f32, Vec3)> {
+    let f = origin - center;
+    let a = direction.length_squared();
+    let b = -f.dot(direction);
+    let miss = f + direction * (b / a);
+    let discriminant = radius * radius - miss.length_squared();
+    if discriminant < 0.0 || b <= 0.0 {
+        return None;
+    }
+    let c = f.length_squared() - radius * radius;
+    let t = c / (b + (a * discriminant).sqrt());
+    Some((t, ((f + direction * t) / radius).normalize()))
+}
+
+/// The point of a sampled direction that rounding put just outside the sphere.
+fn tangent_of_sphere(from: Vec3, direction: Vec3, center: Vec3) -> (f32, Vec3) {
+    let t = (center - from).dot(direction);
+    (t, (from + direction * t - center).normalize())
+}
+
+/// The emitter of a light of some power and size.
+impl Emitter {
+    /// A sun of angular radius `radius` (radians, 0..=π/2) that gives a facing surface exactly
+    /// `irradiance`.
+    pub fn sun(towards: Vec3, radius: f64, irradiance: Rgb) -> Self {
+        if radius == 0.0 {
+            return Self::Sun { towards, irradiance };
+        }
+        let half_sin = portable::sin_f64(0.5 * radius);
+        let sin = portable::sin_f64(radius);
+        Self::SunCap {
+            frame: Frame::from_normal(towards),
+            one_minus_cos: (2.0 * half_sin * half_sin) as f32,
+            radiance: irradiance / (std::f64::consts::PI * sin * sin) as f32,
+        }
+    }
+}

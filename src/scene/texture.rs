@@ -1,0 +1,232 @@
+//! Colours that change from place to place.
+//!
+//! A noise pattern is a number from 0 to 1 at every point, shown through a ramp of colours. With
+//! q = point · scale and octaves, lacunarity and gain as in [`Octaves`]:
+//!
+//! - *spots*: q is displaced by `distortion` · (three Perlin noises of q); the pattern is a smooth
+//!   step of the fractal sum there, from 0 below 0.06 to 1 above 0.2;
+//! - *marble*: 1/2 + 1/2 sin(π (q.x + `distortion` · turbulence(q)));
+//! - *clouds*: 1/2 + the fractal sum at q displaced as for spots;
+//! - *wood*: with r the distance of q from the Y axis plus `distortion` · the fractal sum, the
+//!   fraction of r: rising as its square over 0.85 of a ring, then falling smoothly.
+//!
+//! Values are clamped to 0..=1.
+//!
+//! Sources: K. Perlin, "An Image Synthesizer", SIGGRAPH 1985; D. S. Ebert et al., "Texturing and
+//! Modeling", 3rd edition, 2003, chapters 2 and 12.
+
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3, Vec2, Vec3};
+
+use crate::color::{Rgb, luminance};
+use crate::math::noise::{Octaves, perlin};
+use crate::math::portable;
+use crate::scene::image::Image;
+
+/// A colour for every point of an object, or for every direction.
+#[derive(Clone, Debug)]
+pub enum Texture {
+    /// The same everywhere.
+    Solid(Rgb),
+    /// Cubes of two colours.
+    Checker {
+        /// Cubes per unit.
+        scale: f64,
+        /// Of even and odd cubes.
+        colors: [Rgb; 2],
+    },
+    /// A picture, repeated.
+    Image {
+        /// Repetitions per unit of uv.
+        scale: f64,
+        /// The picture.
+        image: Arc<Image>,
+    },
+    /// Perlin noise.
+    Noise(Noise),
+}
+
+/// Images are equal if they are the same one.
+impl PartialEq for Texture {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Solid(a), Self::Solid(b)) => a == b,
+            (Self::Checker { scale: s, colors: a }, Self::Checker { scale: t, colors: b }) => {
+                s == t && a == b
+            }
+            (Self::Image { scale: s, image: a }, Self::Image { scale: t, image: b }) => {
+                s == t && Arc::ptr_eq(a, b)
+            }
+            (Self::Noise(a), Self::Noise(b)) => a == b,
+            _ => false,
+        }
+    }
+}
+
+/// A noise pattern and its colours.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Noise {
+    /// Which pattern.
+    pub pattern: Pattern,
+    /// Cells per unit.
+    pub scale: f64,
+    /// The fractal sum.
+    pub octaves: Octaves,
+    /// How strongly turbulence bends the pattern.
+    pub distortion: f64,
+    /// Two or more colours, evenly spaced over 0..=1.
+    pub colors: Vec<Rgb>,
+}
+
+/// The patterns made of noise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pattern {
+    /// Round spots.
+    Spots,
+    /// Bent veins.
+    Marble,
+    /// Clouds.
+    Clouds,
+    /// Annual rings.
+    Wood,
+}
+
+/// Where a texture is looked up.
+#[derive(Clone, Copy, Debug)]
+pub struct Lookup {
+    /// In object space.
+    pub point: DVec3,
+    /// Texture coordinates.
+    pub uv: Vec2,
+    /// Gradients of u and v by the point.
+    pub uv_gradients: [Vec3; 2],
+}
+
+impl Texture {
+    /// Colour at a place of an object.
+    pub fn eval(&self, at: &Lookup) -> Rgb {
+        match self {
+            Self::Solid(color) => *color,
+            Self::Checker { scale, colors } => checker(*scale, colors, at.point),
+            Self::Image { scale, image } => image.lookup(at.uv.as_dvec2() * *scale),
+            Self::Noise(noise) => noise.color(at.point),
+        }
+    }
+
+    /// Colour in a unit direction: for backgrounds.
+    pub fn eval_direction(&self, direction: Vec3) -> Rgb {
+        let d = direction.as_dvec3();
+        match self {
+            Self::Solid(color) => *color,
+            Self::Checker { scale, colors } => checker(*scale, colors, d),
+            Self::Image { scale, image } => {
+                let u = 0.5 + portable::atan2_f64(d.x, -d.z) / TAU;
+                let v = 0.5 + portable::asin_f64(d.y.clamp(-1.0, 1.0)) / PI;
+                image.lookup(DVec2::new(u, v) * *scale)
+            }
+            Self::Noise(noise) => noise.color(d),
+        }
+    }
+
+    /// Gradient of the luminance by the object-space point: of images along the surface through
+    /// uv, of noise by central differences; 0 for the rest.
+    pub fn luminance_gradient(&self, at: &Lookup) -> Vec3 {
+        match self {
+            Self::Solid(_) | Self::Checker { .. } => Vec3::ZERO,
+            Self::Image { scale, image } => {
+                let slope = image.luminance_gradient(at.uv.as_dvec2() * *scale) * *scale as f32;
+                at.uv_gradients[0] * slope.x + at.uv_gradients[1] * slope.y
+            }
+            Self::Noise(noise) => noise.luminance_gradient(at.point),
+        }
+    }
+}
+
+/// Looked up a little further along each axis, so that a face on a cell's border is not speckled.
+fn checker(scale: f64, colors: &[Rgb; 2], p: DVec3) -> Rgb {
+    const SHIFT: f64 = 1e-4;
+    let cell = (p * scale + SHIFT).floor();
+    let parity = (cell.x + cell.y + cell.z).rem_euclid(2.0);
+    colors[usize::from(parity >= 1.0)]
+}
+
+impl Noise {
+    /// Colour at a point.
+    pub fn color(&self, p: DVec3) -> Rgb {
+        self.ramp(self.value(p))
+    }
+
+    /// The pattern's value at a point, 0..=1.
+    pub fn value(&self, p: DVec3) -> f64 {
+        let q = p * self.scale;
+        let value = match self.pattern {
+            Pattern::Spots => smooth_step(0.06, 0.2, self.octaves.fbm(self.displaced(q))),
+            Pattern::Marble => {
+                let bend = if self.distortion == 0.0 {
+                    0.0
+                } else {
+                    self.distortion * self.octaves.turbulence(q)
+                };
+                0.5 + 0.5 * portable::sin_f64(PI * (q.x + bend))
+            }
+            Pattern::Clouds => 0.5 + self.octaves.fbm(self.displaced(q)),
+            Pattern::Wood => {
+                let bend = if self.distortion == 0.0 {
+                    0.0
+                } else {
+                    self.distortion * self.octaves.fbm(q)
+                };
+                let r = (q.x * q.x + q.z * q.z).sqrt() + bend;
+                let f = r - r.floor();
+                const LATE: f64 = 0.85;
+                if f < LATE { (f / LATE).powi(2) } else { 1.0 - smooth_step(LATE, 1.0, f) }
+            }
+        };
+        if value.is_finite() { value.clamp(0.0, 1.0) } else { 0.0 }
+    }
+
+    fn displaced(&self, q: DVec3) -> DVec3 {
+        const ELSEWHERE: [DVec3; 3] =
+            [DVec3::new(31.7, 11.3, 5.9), DVec3::new(7.1, 43.9, 23.3), DVec3::new(53.3, 2.7, 37.1)];
+        if self.distortion == 0.0 {
+            return q;
+        }
+        let [x, y, z] = ELSEWHERE.map(|shift| perlin(q + shift));
+        q + DVec3::new(x, y, z) * self.distortion
+    }
+
+    fn ramp(&self, value: f64) -> Rgb {
+        let n_steps = self.colors.len() - 1;
+        let at = value * n_steps as f64;
+        let step = (at as usize).min(n_steps.saturating_sub(1));
+        let (a, b) = (self.colors[step], self.colors[(step + 1).min(n_steps)]);
+        a + (b - a) * (at - step as f64) as f32
+    }
+
+    fn luminance_gradient(&self, p: DVec3) -> Vec3 {
+        // A small part of the finest cell, yet far above the rounding of f64.
+        let finest = self.octaves.lacunarity.max(1.0).powi(self.octaves.count as i32 - 1);
+        let h = 1e-3 / (self.scale * finest);
+        let at = |d: DVec3| self.exact_luminance(p + d);
+        let slope = |axis: DVec3| (at(axis * h) - at(axis * -h)) / (2.0 * h);
+        let gradient = DVec3::new(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z)).as_vec3();
+        if gradient.is_finite() { gradient } else { Vec3::ZERO }
+    }
+
+    /// Luminance in f64: a difference of rounded colours would be noise.
+    fn exact_luminance(&self, p: DVec3) -> f64 {
+        let n_steps = self.colors.len() - 1;
+        let at = self.value(p) * n_steps as f64;
+        let step = (at as usize).min(n_steps.saturating_sub(1));
+        let a = f64::from(luminance(self.colors[step]));
+        let b = f64::from(luminance(self.colors[(step + 1).min(n_steps)]));
+        a + (b - a) * (at - step as f64)
+    }
+}
+
+fn smooth_step(low: f64, high: f64, x: f64) -> f64 {
+    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}

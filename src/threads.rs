@@ -1,0 +1,32 @@
+//! The one way to start threads: named, and in pools of their own.
+
+use std::io;
+use std::thread::{Builder, JoinHandle};
+
+/// Starts a named thread.
+///
+/// # Errors
+/// When the system has no thread left.
+pub fn spawn<T: Send + 'static>(
+    name: &str,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> io::Result<JoinHandle<T>> {
+    Builder::new().name(name.to_owned()).spawn(work)
+}
+
+/// A pool of `n_threads` (at least 1) named threads; never rayon's global one.
+///
+/// # Errors
+/// When the system has no thread left.
+pub fn pool(name: &'static str, n_threads: usize) -> io::Result<rayon::ThreadPool> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(n_threads.max(1))
+        .thread_name(move |index| format!("{name}-{index}"))
+        .build()
+        .map_err(io::Error::other)
+}
+
+/// Processors that this process may use, at least 1.
+pub fn available() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
