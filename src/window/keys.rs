@@ -109,8 +109,9 @@ pub(super) const MOTIONS: &[(&str, &str)] = &[
 ];
 
 /// The actions whose keys were pressed, taken out of the input. Keys alone do nothing while a
-/// field has the focus; with Ctrl they do, but for those that text fields use themselves.
-pub(super) fn pressed(ctx: &egui::Context) -> Vec<Action> {
+/// field has the focus; with Ctrl they do, but for those that text fields use themselves. While
+/// the camera is `flying`, letters belong to it.
+pub(super) fn pressed(ctx: &egui::Context, flying: bool) -> Vec<Action> {
     let typing = ctx.memory(|memory| memory.focused().is_some());
     let mut actions = Vec::new();
     ctx.input_mut(|input| {
@@ -122,6 +123,9 @@ pub(super) fn pressed(ctx: &egui::Context) -> Vec<Action> {
                 _ => binding.modifiers.command,
             };
             if typing && !works_while_typing {
+                continue;
+            }
+            if flying && !binding.modifiers.command {
                 continue;
             }
             if binding.action == Action::CopyImage {
@@ -196,7 +200,7 @@ mod tests {
             modifiers,
         });
         let mut actions = Vec::new();
-        let _ = ctx.run_ui(input, |ui| actions.extend(pressed(ui.ctx())));
+        let _ = ctx.run_ui(input, |ui| actions.extend(pressed(ui.ctx(), false)));
         actions
     }
 

@@ -1,19 +1,73 @@
 //! The desktop window: a viewport that sharpens while it is watched, and a panel with every
 //! setting of the scene.
-#![allow(dead_code)]
+//!
+//! Each frame the panels edit the document's description in place; it is resolved, made a job and
+//! compared with the last one by the session. The window's own thread traces, loads, builds and
+//! waits for nothing. Only this module names egui.
+
+mod actions;
+mod app;
+mod background;
 mod color;
 mod dialogs;
+mod files;
+mod gesture;
 mod help;
 mod keys;
 mod navigation;
+mod output;
 mod panels;
 mod picture;
 mod presets;
 mod state;
 mod status;
 mod structure;
+mod swatches;
 mod theme;
 mod toasts;
 mod toolbar;
 mod viewport;
 mod widgets;
+mod work;
+
+use crate::loader::Source;
+use std::path::PathBuf;
+
+/// The gallery scene that opens where no file is named.
+const FIRST_SCENE: &str = "final";
+
+/// Why the window could not be shown.
+#[derive(Debug, thiserror::Error)]
+pub enum WindowError {
+    /// There is no display, or it refuses.
+    #[error("cannot open a window: {reason}; `penumbra render` makes pictures without one")]
+    NoWindow {
+        /// What the system said.
+        reason: String,
+    },
+}
+
+/// Opens the window on a scene, a mesh or a snapshot, or on the gallery's final scene, and stays
+/// until it is closed.
+///
+/// # Errors
+/// Where there is no display, or no way to draw on it.
+pub fn run(file: Option<PathBuf>) -> Result<(), WindowError> {
+    let first = file.map_or(Source::Gallery(FIRST_SCENE), Source::File);
+    let options = eframe::NativeOptions {
+        renderer: eframe::Renderer::Glow,
+        viewport: egui::ViewportBuilder::default()
+            .with_app_id("penumbra")
+            .with_title("Penumbra")
+            .with_inner_size([1280.0, 800.0])
+            .with_min_inner_size([800.0, 520.0])
+            .with_drag_and_drop(true),
+        // What is rendered is shown bit by bit as it was made.
+        dithering: false,
+        ..eframe::NativeOptions::default()
+    };
+    let create: eframe::AppCreator<'_> =
+        Box::new(move |cc| Ok(Box::new(app::App::new(cc, first)?)));
+    eframe::run_native("penumbra", options, create)
+        .map_err(|error| WindowError::NoWindow { reason: error.to_string() })
+}

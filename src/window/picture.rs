@@ -3,23 +3,22 @@
 //! The window's thread only hands over what should be shown and takes what is ready; a swap of a
 //! pointer under a lock is all that either thread waits for.
 
+use super::background::Background;
 use super::panels::PictureStatistics;
 use super::viewport::Shown;
 use crate::scene::description::{ToneMappingDescription, ToneOperator};
 use crate::session::Frame;
-use crate::threads;
 use crate::tone_mapping::map_to_srgb8;
 use egui::{Color32, ColorImage, TextureFilter, TextureHandle, TextureOptions};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::thread::JoinHandle;
+use std::sync::Arc;
 
 /// The picture on show and the thread that prepares the next.
 pub(super) struct PictureDisplay {
-    shared: Arc<Shared>,
-    thread: Option<JoinHandle<()>>,
+    thread: Background<Order, Displayed>,
     asked: Option<Key>,
     texture: Option<TextureHandle>,
     size: [u32; 2],
+    image: Option<Arc<ColorImage>>,
     statistics: Option<PictureStatistics>,
 }
 
@@ -39,37 +38,26 @@ struct Order {
 }
 
 struct Displayed {
-    image: ColorImage,
+    image: Arc<ColorImage>,
     size: [u32; 2],
     is_coarse: bool,
     statistics: PictureStatistics,
 }
 
-#[derive(Default)]
-struct Shared {
-    mailbox: Mutex<Mailbox>,
-    changed: Condvar,
-}
-
-#[derive(Default)]
-struct Mailbox {
-    order: Option<Order>,
-    ready: Option<Displayed>,
-    closing: bool,
-}
-
 impl PictureDisplay {
     /// Starts the thread; `wake` is called when a picture is ready.
+    ///
+    /// # Errors
+    /// When the system has no thread left.
     pub(super) fn new(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let shared = Arc::new(Shared::default());
-        let for_thread = Arc::clone(&shared);
-        let thread = threads::spawn("display", move || prepare_pictures(&for_thread, wake))?;
+        let mut bytes = Vec::new();
+        let prepare = move |order: Order| display(&order, &mut bytes);
         Ok(Self {
-            shared,
-            thread: Some(thread),
+            thread: Background::new("display", prepare, wake)?,
             asked: None,
             texture: None,
             size: [1, 1],
+            image: None,
             statistics: None,
         })
     }
@@ -87,20 +75,20 @@ impl PictureDisplay {
         }
         self.asked = Some(key);
         let frame = Arc::clone(frame);
-        let order = Order { frame, exposure: tone.exposure, operator: tone.operator };
-        self.shared.lock().order = Some(order);
-        self.shared.changed.notify_one();
+        self.thread.order(Order { frame, exposure: tone.exposure, operator: tone.operator });
     }
 
     /// Brings a picture that is ready to the graphics card.
     pub(super) fn update(&mut self, ctx: &egui::Context) {
-        let Some(ready) = self.shared.lock().ready.take() else { return };
+        let Some(ready) = self.thread.take() else { return };
         let options = texture_options(ready.is_coarse);
+        let image = Arc::clone(&ready.image);
         match &mut self.texture {
-            Some(texture) => texture.set(ready.image, options),
-            None => self.texture = Some(ctx.load_texture("picture", ready.image, options)),
+            Some(texture) => texture.set(image, options),
+            None => self.texture = Some(ctx.load_texture("picture", image, options)),
         }
         self.size = ready.size;
+        self.image = Some(ready.image);
         self.statistics = Some(ready.statistics);
     }
 
@@ -109,49 +97,14 @@ impl PictureDisplay {
         self.texture.as_ref().map(|texture| Shown { texture, size: self.size })
     }
 
+    /// The bytes on show.
+    pub(super) fn image(&self) -> Option<&Arc<ColorImage>> {
+        self.image.as_ref()
+    }
+
     /// Histogram of the picture on show.
     pub(super) fn statistics(&self) -> Option<&PictureStatistics> {
         self.statistics.as_ref()
-    }
-}
-
-impl Drop for PictureDisplay {
-    fn drop(&mut self) {
-        self.shared.lock().closing = true;
-        self.shared.changed.notify_one();
-        if let Some(thread) = self.thread.take() {
-            // A panic there has nothing left to break here.
-            let _ = thread.join();
-        }
-    }
-}
-
-impl Shared {
-    fn lock(&self) -> MutexGuard<'_, Mailbox> {
-        self.mailbox.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// The newest order, waited for; `None` when the window closes.
-    fn next_order(&self) -> Option<Order> {
-        let mut mailbox = self.lock();
-        loop {
-            if mailbox.closing {
-                return None;
-            }
-            if let Some(order) = mailbox.order.take() {
-                return Some(order);
-            }
-            mailbox = self.changed.wait(mailbox).unwrap_or_else(PoisonError::into_inner);
-        }
-    }
-}
-
-fn prepare_pictures(shared: &Shared, wake: impl Fn()) {
-    let mut bytes = Vec::new();
-    while let Some(order) = shared.next_order() {
-        let displayed = display(&order, &mut bytes);
-        shared.lock().ready = Some(displayed);
-        wake();
     }
 }
 
@@ -172,7 +125,7 @@ fn display(order: &Order, bytes: &mut Vec<[u8; 3]>) -> Displayed {
         .collect();
     let size = [picture.width as usize, picture.height as usize];
     Displayed {
-        image: ColorImage::new(size, pixels),
+        image: Arc::new(ColorImage::new(size, pixels)),
         size: [order.frame.job.width, order.frame.job.height],
         is_coarse: 1 < order.frame.scale,
         statistics: PictureStatistics { histogram },

@@ -5,7 +5,7 @@ use super::{Selection, path_segment, subheading};
 use crate::scene::description::{LightDescription, LightKind, OneOrTwo, SceneDescription};
 use crate::window::color::strength_and_tint;
 use crate::window::structure::Part;
-use crate::window::widgets::{Figure, pick_one, row, switch, triple};
+use crate::window::widgets::{Figure, pick_one, row, triple};
 use egui::Ui;
 
 const KINDS: [(LightKind, &str); 5] = [

@@ -1,0 +1,279 @@
+//! What each action does, and what comes back from the threads that work for the window.
+
+use super::app::App;
+use super::dialogs::{Purpose, UnsavedAnswer, unsaved_question};
+use super::files::{Pending, Written, file_title, source_title};
+use super::keys::Action;
+use super::toolbar::ToolbarChoice;
+use super::viewport::Click;
+use crate::document::Document;
+use crate::loader::{Loaded, Source};
+use crate::scene::description::{SceneDescription, ToneOperator};
+use crate::scene::orbit::{self, StandardView};
+use egui::ViewportCommand;
+use std::path::PathBuf;
+
+impl App {
+    /// Does what a key, a button or a menu asks for.
+    pub(super) fn do_action(
+        &mut self,
+        ctx: &egui::Context,
+        scene: &mut SceneDescription,
+        action: Action,
+    ) {
+        match action {
+            Action::FrameAll => self.frame_all(scene),
+            Action::HomeCamera => {
+                scene.camera = self.home_camera.clone();
+                self.interface.navigation.pivot = None;
+            }
+            Action::ViewFront => self.standard_view(scene, StandardView::Front),
+            Action::ViewSide => self.standard_view(scene, StandardView::Side),
+            Action::ViewTop => self.standard_view(scene, StandardView::Top),
+            Action::Pause => self.interface.is_paused = !self.interface.is_paused,
+            Action::Restart => self.work.session.restart(),
+            Action::Brighter => step_exposure(scene, 0.5),
+            Action::Darker => step_exposure(scene, -0.5),
+            Action::NextOperator => {
+                scene.tone_mapping.operator = next_operator(scene.tone_mapping.operator);
+            }
+            Action::ToggleLens => self.toggle_lens(scene),
+            Action::Snapshot => self.snapshot(ctx),
+            Action::Save => self.save_scene(ctx),
+            Action::SaveAs => self.files.ask_where_to_save(ctx, &mut self.dialogs),
+            Action::Open => self.dialogs.ask(ctx, Purpose::Open, ""),
+            Action::CopyImage => self.copy_picture(ctx),
+            Action::Undo => {
+                self.document.undo();
+                *scene = self.document.description().clone();
+            }
+            Action::Redo => {
+                self.document.redo();
+                *scene = self.document.description().clone();
+            }
+            Action::TogglePanel => self.interface.panel_shown = !self.interface.panel_shown,
+            Action::FullScreen => {
+                let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
+                ctx.send_viewport_cmd(ViewportCommand::Fullscreen(!full));
+            }
+            Action::Help => self.interface.help_shown = !self.interface.help_shown,
+            Action::Cancel => self.cancel(ctx),
+        }
+    }
+
+    /// Does what was chosen in the toolbar.
+    pub(super) fn do_choice(
+        &mut self,
+        ctx: &egui::Context,
+        scene: &mut SceneDescription,
+        choice: ToolbarChoice,
+    ) {
+        match choice {
+            ToolbarChoice::Do(action) => self.do_action(ctx, scene, action),
+            ToolbarChoice::Gallery(index) => {
+                if let Some(entry) = crate::io::gallery::GALLERY.get(index) {
+                    self.open(Source::Gallery(entry.name));
+                }
+            }
+            ToolbarChoice::File(path) => self.open(Source::File(path)),
+            ToolbarChoice::PathBox => self.dialogs.type_path(Purpose::Open, ""),
+        }
+    }
+
+    /// Opens a source, after a question where edits would be lost.
+    pub(super) fn open(&mut self, source: Source) {
+        if self.document.is_dirty() {
+            self.files.pending = Some(Pending::Open(source));
+        } else {
+            self.files.open(source);
+        }
+    }
+
+    /// Takes what the loader and the writers have finished.
+    pub(super) fn take_results(&mut self, ctx: &egui::Context) {
+        match self.files.loader.take() {
+            None => {}
+            Some(Ok(loaded)) => self.take_scene(ctx, loaded),
+            Some(Err(failure)) => {
+                self.files.loading = None;
+                self.toasts.fail(failure.to_string());
+            }
+        }
+        while let Some(written) = self.files.take_written() {
+            match written {
+                Written::Scene(path) => {
+                    self.toasts.say(format!("saved {}", path.display()));
+                    self.files.title = file_title(&path);
+                    self.interface.remember_file(path.clone());
+                    self.files.scene_path = Some(path);
+                    self.document.mark_saved();
+                    self.go_on(ctx);
+                }
+                Written::Snapshot(path) => {
+                    self.toasts.say(format!("snapshot {}", path.display()));
+                }
+                Written::Failed(reason) => {
+                    self.files.pending = None;
+                    self.toasts.fail(reason);
+                }
+            }
+        }
+    }
+
+    /// Answers the question that a click in the picture asked of the renderer.
+    pub(super) fn take_pick(&mut self, scene: &mut SceneDescription) {
+        let Some(pick) = self.work.session.take_pick() else { return };
+        let Some(click) = self.awaited_click.take() else { return };
+        match (click, pick.point) {
+            (Click::Focus(..), Some(_)) => {
+                scene.camera.focal_distance = Some(pick.depth);
+                self.gesture.next();
+            }
+            (Click::TurnAbout(..), Some(point)) => {
+                self.interface.navigation.pivot = Some(point);
+                self.toasts.say("the camera turns about this point now");
+            }
+            (Click::Focus(..) | Click::TurnAbout(..), None) => {
+                self.toasts.say("there is nothing under the cursor");
+            }
+        }
+    }
+
+    /// Opens a file that was dropped on the window.
+    pub(super) fn take_dropped_file(&mut self, ctx: &egui::Context) {
+        let dropped: Option<PathBuf> = ctx.input(|input| {
+            input.raw.dropped_files.first().map(|file| file.path().to_owned())
+        });
+        if let Some(path) = dropped {
+            self.open(Source::File(path));
+        }
+    }
+
+    /// Shows the box for a path and takes what the dialogs answered.
+    pub(super) fn ask_for_paths(&mut self, ctx: &egui::Context) {
+        match self.dialogs.take_path(ctx) {
+            None => {}
+            Some((Purpose::Open, path)) => self.open(Source::File(path)),
+            Some((Purpose::SaveScene, path)) => self.save_to(ctx, path),
+        }
+    }
+
+    /// Keeps the window open while there are edits to ask about.
+    pub(super) fn guard_close(&mut self, ctx: &egui::Context) {
+        let asked = ctx.input(|input| input.viewport().close_requested());
+        if asked && self.document.is_dirty() && !self.files.close_confirmed {
+            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.files.pending = Some(Pending::Close);
+        }
+    }
+
+    /// Asks about unsaved edits where something waits for the answer.
+    pub(super) fn ask_about_unsaved(&mut self, ctx: &egui::Context) {
+        if self.files.pending.is_none() || self.files.is_saving_first {
+            return;
+        }
+        match unsaved_question(ctx, &self.files.title) {
+            None => {}
+            Some(UnsavedAnswer::Save) => {
+                self.files.is_saving_first = true;
+                self.save_scene(ctx);
+            }
+            Some(UnsavedAnswer::Discard) => self.go_on(ctx),
+            Some(UnsavedAnswer::Cancel) => self.files.pending = None,
+        }
+    }
+
+    fn take_scene(&mut self, ctx: &egui::Context, loaded: Loaded) {
+        let Loaded { source, description, assets, report } = loaded;
+        self.files.loading = None;
+        self.files.has_scene = true;
+        self.files.title = source_title(&source);
+        self.files.scene_path = None;
+        if let Source::File(path) = &source {
+            self.interface.remember_file(path.clone());
+            if path.extension().is_some_and(|ending| ending == "toml") {
+                self.files.scene_path = Some(path.clone());
+            }
+        }
+        if !report.is_empty() {
+            let n_lines = report.len();
+            let first = &report[0];
+            let more = if n_lines > 1 { format!(" (and {} more)", n_lines - 1) } else { String::new() };
+            self.toasts.say(format!("{first}{more}"));
+        }
+        self.files.report = report;
+        self.home_camera = description.camera.clone();
+        self.interface.forget_scene();
+        self.work.set_assets(assets);
+        self.document = Document::new(description);
+        self.gesture.next();
+        ctx.send_viewport_cmd(ViewportCommand::Title(format!("{} – Penumbra", self.files.title)));
+    }
+
+    fn go_on(&mut self, ctx: &egui::Context) {
+        self.files.is_saving_first = false;
+        match self.files.pending.take() {
+            None => {}
+            Some(Pending::Open(source)) => self.files.open(source),
+            Some(Pending::Close) => {
+                self.files.close_confirmed = true;
+                ctx.send_viewport_cmd(ViewportCommand::Close);
+            }
+        }
+    }
+
+    fn cancel(&mut self, ctx: &egui::Context) {
+        let closed = std::mem::take(&mut self.interface.help_shown)
+            || std::mem::take(&mut self.interface.picking_focus)
+            || self.dialogs.dismiss()
+            || self.files.cancel_loading()
+            || self.toasts.dismiss();
+        let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
+        if !closed && full {
+            ctx.send_viewport_cmd(ViewportCommand::Fullscreen(false));
+        }
+    }
+
+    fn frame_all(&mut self, scene: &mut SceneDescription) {
+        let [width, height] = self.picture_size();
+        let aspect = f64::from(width) / f64::from(height.max(1));
+        scene.camera = orbit::framed(&scene.camera, &self.work.bounds(), aspect);
+        self.interface.navigation.pivot = None;
+    }
+
+    fn standard_view(&mut self, scene: &mut SceneDescription, view: StandardView) {
+        let pivot = self.interface.navigation.pivot(&scene.camera);
+        scene.camera = orbit::standard_view(&scene.camera, pivot, view);
+    }
+
+    fn toggle_lens(&mut self, scene: &mut SceneDescription) {
+        let radius = scene.camera.aperture_radius;
+        if radius > 0.0 {
+            self.interface.lens_when_open = Some(radius);
+            scene.camera.aperture_radius = 0.0;
+        } else {
+            let usual = orbit::focal_distance(&scene.camera) * 0.01;
+            scene.camera.aperture_radius = self.interface.lens_when_open.unwrap_or(usual);
+        }
+    }
+
+    fn save_scene(&mut self, ctx: &egui::Context) {
+        match self.files.scene_path.clone() {
+            Some(path) => self.save_to(ctx, path),
+            None => self.files.ask_where_to_save(ctx, &mut self.dialogs),
+        }
+    }
+}
+
+fn step_exposure(scene: &mut SceneDescription, stops: f64) {
+    scene.tone_mapping.exposure = (scene.tone_mapping.exposure + stops).clamp(-64.0, 64.0);
+}
+
+fn next_operator(operator: ToneOperator) -> ToneOperator {
+    match operator {
+        ToneOperator::Agx => ToneOperator::Aces,
+        ToneOperator::Aces => ToneOperator::Reinhard,
+        ToneOperator::Reinhard => ToneOperator::Linear,
+        ToneOperator::Linear => ToneOperator::Agx,
+    }
+}
