@@ -9,4 +9,6 @@ pub mod geometry;
 
 pub mod scene;
 
+pub mod io;
 pub mod render;
+pub mod tone_mapping;

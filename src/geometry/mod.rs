@@ -8,6 +8,7 @@
 mod instance;
 pub mod kd_tree;
 pub mod mesh;
+pub mod normals;
 mod mesh_tree;
 mod nearest;
 mod shape;

@@ -3,6 +3,7 @@
 //! Vectors are glam's. Everything here is pure arithmetic: no scene, no state.
 
 mod aabb;
+pub mod approx;
 mod batch;
 mod frame;
 pub mod noise;

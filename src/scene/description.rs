@@ -7,10 +7,11 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Three numbers: a point, a direction, a colour or three factors.
-pub type Triple = [f64; 3];
+mod values;
 
-/// Everything a scene file holds. A [`Default`] scene is empty, with the camera at its defaults.
+pub use values::{ColorOrTexture, OneOrThree, OneOrTwo, Triple};
+
+/// Everything a scene file holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneDescription {
@@ -176,16 +177,6 @@ impl Default for EnvironmentDescription {
     fn default() -> Self {
         Self { ambient: [0.0; 3], background: ColorOrTexture::Color([0.0; 3]) }
     }
-}
-
-/// A constant colour, or the name of a texture.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum ColorOrTexture {
-    /// Linear RGB.
-    Color(Triple),
-    /// The name of an entry of `[[textures]]`.
-    Texture(String),
 }
 
 /// `[[textures]]`: a colour for every point. One struct for all types: a key that the type does
@@ -382,28 +373,6 @@ pub enum LightKind {
     Sun,
 }
 
-/// A number, or an array of one or two.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum OneOrTwo {
-    /// The same in both directions.
-    One(f64),
-    /// An array of one.
-    Single([f64; 1]),
-    /// Width and height.
-    Two([f64; 2]),
-}
-
-impl OneOrTwo {
-    /// Width and height; one number stands for both.
-    pub fn pair(self) -> [f64; 2] {
-        match self {
-            Self::One(size) | Self::Single([size]) => [size, size],
-            Self::Two(pair) => pair,
-        }
-    }
-}
-
 /// `[[objects]]`: a shape, where it is and what it is made of. One struct for all types: a key
 /// that the type does not use is accepted and kept.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -524,26 +493,6 @@ pub enum NormalsKind {
     Smooth,
     /// The face's own.
     Flat,
-}
-
-/// One factor, or one for each axis.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum OneOrThree {
-    /// The same along every axis.
-    One(f64),
-    /// Along x, y and z.
-    Three(Triple),
-}
-
-impl OneOrThree {
-    /// The three factors.
-    pub fn triple(self) -> Triple {
-        match self {
-            Self::One(factor) => [factor; 3],
-            Self::Three(factors) => factors,
-        }
-    }
 }
 
 fn yes() -> bool {

@@ -1,0 +1,395 @@
+//! Shading normals of a mesh, averaged where faces share a vertex. Object space, unit length.
+//!
+//! Faces share a vertex where their corners have the same index: material, normals and texture
+//! coordinates do not matter. Each face weighs as much as its angle at the vertex (G. Thürmer and
+//! C. Wüthrich, "Computing Vertex Normals from Polygonal Facets", Journal of Graphics Tools 3(1),
+//! 1998), so that how a polygon was cut makes no difference.
+
+use std::f64::consts::PI;
+
+use glam::{DVec3, Vec3};
+
+use crate::geometry::mesh::ABSENT;
+use crate::math::portable;
+
+/// Unit normals, and three indices into them a triangle: the arrays of a
+/// [`Mesh`](crate::geometry::mesh::Mesh). Both are empty where the whole mesh is flat.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Normals {
+    /// Unit normals.
+    pub normals: Vec<Vec3>,
+    /// Indices into `normals`, or [`ABSENT`].
+    pub ids: Vec<[u32; 3]>,
+}
+
+/// Faces that meet at one vertex, past which a crease is not looked for: each face is compared
+/// with each, and no smooth surface has such a vertex.
+const MAX_FACES_AT_CREASE: usize = 4096;
+
+/// Cosine by which faces may miss the crease angle and still count as within it: the right angles
+/// of a box are rarely right to the last bit.
+const CREASE_SLACK: f64 = 1e-6;
+
+/// Length below which weighted normals have cancelled, for weights that add up to 1.
+const CANCELLED: f64 = 1e-6;
+
+/// Averages at each corner the faces around its vertex whose normals are within `crease_angle`
+/// (radians; π takes all) of its own face's. Triangles without area add nothing and have no
+/// normals of their own; where normals cancel, the corner has its face's.
+pub fn smooth(positions: &[Vec3], triangles: &[[u32; 3]], crease_angle: f64) -> Normals {
+    let faces = faces_of(positions, triangles);
+    if crease_angle < PI {
+        smooth_within(positions.len(), triangles, &faces, crease_angle)
+    } else {
+        smooth_all(positions.len(), triangles, &faces)
+    }
+}
+
+/// Fills in smooth normals where a file has stored none. `stored.ids` may be empty, or [`ABSENT`]
+/// at single corners; stored normals stay as they are.
+pub fn complete(
+    positions: &[Vec3],
+    triangles: &[[u32; 3]],
+    stored: Normals,
+    crease_angle: f64,
+) -> Normals {
+    if stored.ids.is_empty() {
+        return smooth(positions, triangles, crease_angle);
+    }
+    if !stored.ids.as_flattened().contains(&ABSENT) {
+        return stored;
+    }
+    let averaged = smooth(positions, triangles, crease_angle);
+    let mut normals = stored;
+    let offset = normals.normals.len() as u32;
+    normals.normals.extend(averaged.normals);
+    for (ids, fillers) in normals.ids.iter_mut().zip(averaged.ids) {
+        if !ids.contains(&ABSENT) {
+            continue;
+        }
+        // A triangle is flat as a whole or not at all.
+        let is_flat = fillers == [ABSENT; 3];
+        for (id, filler) in ids.iter_mut().zip(fillers) {
+            if is_flat {
+                *id = ABSENT;
+            } else if *id == ABSENT {
+                *id = filler + offset;
+            }
+        }
+    }
+    normals
+}
+
+/// A triangle as its vertices see it.
+#[derive(Clone, Copy, Debug)]
+struct Face {
+    /// Unit; zero where the triangle has no area.
+    normal: DVec3,
+    /// Angles at the three corners; zero where the triangle is thinner than its corners are exact.
+    angles: [f64; 3],
+}
+
+fn faces_of(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Face> {
+    triangles.iter().map(|ids| face_of(ids.map(|id| positions[id as usize]))).collect()
+}
+
+fn face_of(corners: [Vec3; 3]) -> Face {
+    let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+    let (ab, bc, ca) = (b - a, c - b, a - c);
+    let cross = ab.cross(-ca);
+    let double_area = cross.length();
+    let Some(normal) = cross.try_normalize() else {
+        return Face { normal: DVec3::ZERO, angles: [0.0; 3] };
+    };
+    let longest = ab.length_squared().max(bc.length_squared()).max(ca.length_squared()).sqrt();
+    let size = corners[0].abs().max(corners[1].abs()).max(corners[2].abs()).max_element();
+    // The height of a needle whose corners lie on a line but for their rounding to f32.
+    let rounding = f64::from(f32::EPSILON) * f64::from(size);
+    if double_area <= rounding * longest {
+        return Face { normal, angles: [0.0; 3] };
+    }
+    let at_a = portable::atan2_f64(double_area, -ab.dot(ca));
+    let at_b = portable::atan2_f64(double_area, -bc.dot(ab));
+    Face { normal, angles: [at_a, at_b, (PI - at_a - at_b).max(0.0)] }
+}
+
+/// One normal a vertex, used by all its corners.
+fn smooth_all(n_vertices: usize, triangles: &[[u32; 3]], faces: &[Face]) -> Normals {
+    let mut sums = vec![Sum::default(); n_vertices];
+    for (ids, face) in triangles.iter().zip(faces) {
+        for (id, angle) in ids.iter().zip(face.angles) {
+            sums[*id as usize].add(face.normal, angle);
+        }
+    }
+    let averages: Vec<Option<Vec3>> = sums.iter().map(|sum| sum.average()).collect();
+    let mut all = Normals {
+        // A vertex without normal keeps its place: then the ids are those of the vertices.
+        normals: averages.iter().map(|average| average.unwrap_or(Vec3::Z)).collect(),
+        ids: triangles.to_vec(),
+    };
+    for (ids, face) in all.ids.iter_mut().zip(faces) {
+        if face.normal == DVec3::ZERO {
+            *ids = [ABSENT; 3];
+        } else if ids.iter().any(|id| averages[*id as usize].is_none()) {
+            let own = all.normals.len() as u32;
+            all.normals.push(face.normal.as_vec3());
+            *ids = ids.map(|id| if averages[id as usize].is_some() { id } else { own });
+        }
+    }
+    all
+}
+
+fn smooth_within(
+    n_vertices: usize,
+    triangles: &[[u32; 3]],
+    faces: &[Face],
+    crease_angle: f64,
+) -> Normals {
+    let min_cosine = portable::cos_f64(crease_angle) - CREASE_SLACK;
+    let around = CornersAround::new(n_vertices, triangles);
+    let mut normals = Vec::with_capacity(n_vertices);
+    let mut ids = vec![[ABSENT; 3]; triangles.len()];
+    for vertex in 0..n_vertices {
+        let corners = around.vertex(vertex);
+        let first = normals.len();
+        for (face_id, corner) in corners.iter().map(split_corner) {
+            let face = &faces[face_id];
+            if face.normal == DVec3::ZERO {
+                continue;
+            }
+            let mut sum = Sum::default();
+            if corners.len() <= MAX_FACES_AT_CREASE {
+                for (other_id, other_corner) in corners.iter().map(split_corner) {
+                    let other = &faces[other_id];
+                    if min_cosine <= face.normal.dot(other.normal) {
+                        sum.add(other.normal, other.angles[other_corner]);
+                    }
+                }
+            }
+            let normal = sum.average().unwrap_or_else(|| face.normal.as_vec3());
+            let known = normals[first..].iter().rposition(|n| *n == normal);
+            let id = known.map_or(normals.len(), |i| first + i);
+            if known.is_none() {
+                normals.push(normal);
+            }
+            ids[face_id][corner] = id as u32;
+        }
+    }
+    Normals { normals, ids }
+}
+
+/// Normals weighted by angles.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sum {
+    normal: DVec3,
+    weight: f64,
+}
+
+impl Sum {
+    fn add(&mut self, normal: DVec3, weight: f64) {
+        self.normal += weight * normal;
+        self.weight += weight;
+    }
+
+    /// `None` where there was nothing to add, or where it has cancelled.
+    fn average(&self) -> Option<Vec3> {
+        let length = self.normal.length();
+        (CANCELLED * self.weight < length).then(|| (self.normal / length).as_vec3())
+    }
+}
+
+/// The corners at each vertex, in ascending order: 3 × triangle + corner.
+struct CornersAround {
+    /// Where the corners of each vertex start, and where those of the last end.
+    starts: Vec<u32>,
+    corners: Vec<u32>,
+}
+
+impl CornersAround {
+    fn new(n_vertices: usize, triangles: &[[u32; 3]]) -> Self {
+        let mut starts = vec![0_u32; n_vertices + 1];
+        for id in triangles.as_flattened() {
+            starts[*id as usize + 1] += 1;
+        }
+        for i in 0..n_vertices {
+            starts[i + 1] += starts[i];
+        }
+        let mut fill = starts.clone();
+        let mut corners = vec![0; 3 * triangles.len()];
+        for (corner, id) in triangles.as_flattened().iter().enumerate() {
+            let place = &mut fill[*id as usize];
+            corners[*place as usize] = corner as u32;
+            *place += 1;
+        }
+        Self { starts, corners }
+    }
+
+    fn vertex(&self, vertex: usize) -> &[u32] {
+        &self.corners[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
+    }
+}
+
+/// Triangle and corner.
+fn split_corner(corner: &u32) -> (usize, usize) {
+    ((corner / 3) as usize, (corner % 3) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::vec3;
+    use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
+
+    const CUBE: [[u32; 4]; 6] =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+
+    /// Corners at ±1; vertex i has the signs of the bits of i.
+    fn cube() -> (Vec<Vec3>, Vec<[u32; 3]>) {
+        let sign = |bit: u32| if bit == 0 { -1.0 } else { 1.0 };
+        let positions = (0..8).map(|i| vec3(sign(i & 1), sign(i & 2), sign(i & 4))).collect();
+        let triangles = CUBE.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+        (positions, triangles)
+    }
+
+    #[track_caller]
+    fn assert_near(found: Vec3, expected: Vec3) {
+        assert!((found - expected).length() < 1e-6, "{found}, not {expected}");
+    }
+
+    #[test]
+    fn a_smooth_cube_points_along_its_diagonals_however_its_faces_are_cut() {
+        let (positions, triangles) = cube();
+        let normals = smooth(&positions, &triangles, PI);
+        assert_eq!(normals.ids, triangles);
+        for (normal, position) in normals.normals.iter().zip(&positions) {
+            assert_near(*normal, position.normalize());
+        }
+    }
+
+    #[test]
+    fn a_crease_angle_below_a_right_angle_keeps_a_cube_sharp_and_a_right_angle_does_not() {
+        let (positions, triangles) = cube();
+        let sharp = smooth(&positions, &triangles, 89.0_f64.to_radians());
+        assert_eq!(sharp.normals.len(), 24, "three normals a corner, each shared where it can be");
+        let round = smooth(&positions, &triangles, 90.0_f64.to_radians());
+        assert_eq!(round.normals.len(), 8);
+        for (triangle, ids) in triangles.iter().zip(&sharp.ids) {
+            let own = face_of(triangle.map(|i| positions[i as usize])).normal.as_vec3();
+            for id in ids {
+                assert_near(sharp.normals[*id as usize], own);
+            }
+        }
+        for (triangle, ids) in triangles.iter().zip(&round.ids) {
+            for (vertex, id) in triangle.iter().zip(ids) {
+                let diagonal = positions[*vertex as usize].normalize();
+                assert_near(round.normals[*id as usize], diagonal);
+            }
+        }
+    }
+
+    #[test]
+    fn a_crease_of_almost_180_degrees_agrees_with_180() {
+        let (positions, triangles) = cube();
+        let all = smooth(&positions, &triangles, PI);
+        let almost = smooth(&positions, &triangles, PI - 1e-9);
+        for (ids, others) in all.ids.iter().zip(&almost.ids) {
+            for (id, other) in ids.iter().zip(others) {
+                assert_near(all.normals[*id as usize], almost.normals[*other as usize]);
+            }
+        }
+    }
+
+    #[test]
+    fn faces_that_cancel_keep_their_own_normals() {
+        let positions = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        let triangles = [[0, 1, 2], [0, 2, 1]];
+        for crease in [PI, PI - 1e-3, 1.0] {
+            let normals = smooth(&positions, &triangles, crease);
+            for (ids, own) in normals.ids.iter().zip([Vec3::Z, Vec3::NEG_Z]) {
+                for id in ids {
+                    assert_near(normals.normals[*id as usize], own);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn triangles_without_area_add_nothing_and_stay_flat() {
+        let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, 2.0 * Vec3::X];
+        let triangles = [[0, 1, 2], [0, 1, 1], [0, 1, 3]];
+        for crease in [PI, 1.0] {
+            let normals = smooth(&positions, &triangles, crease);
+            assert_eq!(normals.ids[1..], [[ABSENT; 3]; 2]);
+            for id in normals.ids[0] {
+                assert_eq!(normals.normals[id as usize], Vec3::Z);
+            }
+        }
+    }
+
+    #[test]
+    fn a_needle_that_is_only_rounding_does_not_bend_its_neighbours() {
+        // Points on a line, but for the last bit: the needle's normal is noise.
+        let off = vec3(0.5, f32::EPSILON / 4.0, 0.0);
+        let positions = [Vec3::ZERO, off, Vec3::X, vec3(0.5, 0.0, -1.0)];
+        let triangles = [[0, 1, 2], [0, 2, 3]];
+        let normals = smooth(&positions, &triangles, PI);
+        for id in normals.ids[1] {
+            assert_near(normals.normals[id as usize], Vec3::Y);
+        }
+    }
+
+    #[test]
+    fn stored_normals_stay_and_missing_ones_are_filled_in() {
+        let (positions, triangles) = cube();
+        let mut ids = vec![[ABSENT; 3]; triangles.len()];
+        ids[0] = [0, ABSENT, 0];
+        ids[1] = [0; 3];
+        let stored = Normals { normals: vec![Vec3::X], ids };
+        let normals = complete(&positions, &triangles, stored, PI);
+        assert_eq!(normals.ids[1], [0; 3]);
+        assert_eq!([normals.ids[0][0], normals.ids[0][2]], [0, 0]);
+        assert_eq!(normals.normals[0], Vec3::X);
+        let filled = normals.normals[normals.ids[0][1] as usize];
+        assert_near(filled, positions[triangles[0][1] as usize].normalize());
+    }
+
+    #[test]
+    fn a_mesh_without_stored_normals_is_smooth_up_to_its_crease() {
+        let (positions, triangles) = cube();
+        let none = Normals::default();
+        let normals = complete(&positions, &triangles, none, 1.0);
+        assert_eq!(normals, smooth(&positions, &triangles, 1.0));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig {
+            rng_seed: RngSeed::Fixed(1),
+            failure_persistence: None,
+            ..ProptestConfig::default()
+        })]
+
+        #[test]
+        fn normals_are_units_or_absent_whatever_the_mesh(
+            points in prop::collection::vec(
+                prop::array::uniform3(prop_oneof![
+                    Just(0.0f32), Just(1e12), Just(-1e12), Just(1e-40), -1.0f32..1.0]), 3..12),
+            corners in prop::collection::vec(prop::array::uniform3(any::<u32>()), 1..24),
+            crease in 0.0f64..3.2,
+        ) {
+            let positions: Vec<_> = points.into_iter().map(Vec3::from).collect();
+            let n = positions.len() as u32;
+            let triangles: Vec<_> = corners.into_iter().map(|t| t.map(|i| i % n)).collect();
+            let normals = smooth(&positions, &triangles, crease);
+            for (triangle, ids) in triangles.iter().zip(&normals.ids) {
+                let has_area = face_of(triangle.map(|i| positions[i as usize])).normal
+                    != DVec3::ZERO;
+                prop_assert_eq!(has_area, *ids != [ABSENT; 3]);
+                for id in ids.iter().filter(|id| **id != ABSENT) {
+                    let length = normals.normals[*id as usize].length();
+                    prop_assert!((length - 1.0).abs() < 1e-6, "length {}", length);
+                }
+            }
+        }
+    }
+}

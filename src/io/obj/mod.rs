@@ -1,0 +1,106 @@
+//! A reader of Wavefront OBJ files: triangles with the identity of their `v` lines.
+//!
+//! It reads polygons (cut into triangles), texture coordinates, normals, and the names of
+//! materials and libraries. Smoothing groups, groups, lines, points, curves and vertex colours are
+//! passed over. Nothing here touches the disk.
+//!
+//! Memory is bounded by the file: no line makes more than six times its bytes of arrays.
+
+mod cursor;
+mod error;
+mod faces;
+mod number;
+mod polygon;
+mod reader;
+#[cfg(test)]
+mod tests;
+
+use glam::{Vec2, Vec3};
+
+use crate::geometry::mesh::Mesh;
+use crate::geometry::normals;
+use crate::scene::description::NormalsKind;
+pub use error::ObjError;
+use reader::Reader;
+
+/// What an OBJ file holds, its faces cut into triangles.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ObjFile {
+    /// One point a `v` line, used by a face or not.
+    pub positions: Vec<Vec3>,
+    /// One pair a `vt` line.
+    pub uvs: Vec<Vec2>,
+    /// One unit vector a `vn` line. No corner refers to one that was zero in the file.
+    pub normals: Vec<Vec3>,
+    /// Three indices into `positions` a triangle.
+    pub triangles: Vec<[u32; 3]>,
+    /// Three indices into `uvs` a triangle, or `ABSENT`; empty where no face has any.
+    pub uv_ids: Vec<[u32; 3]>,
+    /// Three indices into `normals` a triangle, or `ABSENT`; empty where no face has any.
+    pub normal_ids: Vec<[u32; 3]>,
+    /// Index into `slot_names` a triangle; empty where there is one slot only.
+    pub slots: Vec<u32>,
+    /// The `usemtl` names that faces have, in order of first use; `None` for faces without.
+    pub slot_names: Vec<Option<String>>,
+    /// Material libraries as the file names them.
+    pub libraries: Vec<String>,
+    /// How many `f` lines there were.
+    pub n_faces: usize,
+    /// What was odd about the file and did not keep it from loading.
+    pub warnings: Vec<String>,
+}
+
+/// What a mesh file says beside its mesh.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshNotes {
+    /// The name of each material slot; `None`: no material was named.
+    pub slot_names: Vec<Option<String>>,
+    /// Material libraries as the file names them, relative to it.
+    pub libraries: Vec<String>,
+    /// How many faces there were before they were cut.
+    pub n_faces: usize,
+    /// What was odd about the file and did not keep it from loading.
+    pub warnings: Vec<String>,
+}
+
+/// Reads a whole mesh and gives it shading normals. `crease_angle_deg` is a scene's
+/// `crease_angle`: 0..=180.
+pub fn load_mesh(
+    bytes: &[u8],
+    kind: NormalsKind,
+    crease_angle_deg: f64,
+) -> Result<(Mesh, MeshNotes), ObjError> {
+    let file = parse(bytes)?;
+    let crease_angle = crease_angle_deg.to_radians();
+    let normals = match kind {
+        NormalsKind::Flat => normals::Normals::default(),
+        NormalsKind::Smooth => normals::smooth(&file.positions, &file.triangles, crease_angle),
+        NormalsKind::File => normals::complete(
+            &file.positions,
+            &file.triangles,
+            normals::Normals { normals: file.normals, ids: file.normal_ids },
+            crease_angle,
+        ),
+    };
+    let mesh = Mesh {
+        positions: file.positions,
+        triangles: file.triangles,
+        normals: normals.normals,
+        normal_ids: normals.ids,
+        uvs: file.uvs,
+        uv_ids: file.uv_ids,
+        slots: file.slots,
+    };
+    let notes = MeshNotes {
+        slot_names: file.slot_names,
+        libraries: file.libraries,
+        n_faces: file.n_faces,
+        warnings: file.warnings,
+    };
+    Ok((mesh, notes))
+}
+
+/// Reads the text of an OBJ file.
+pub fn parse(bytes: &[u8]) -> Result<ObjFile, ObjError> {
+    Reader::new(bytes).read()
+}

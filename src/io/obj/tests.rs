@@ -1,0 +1,381 @@
+//! What the reader accepts, what it refuses and with which words, and how it agrees with tobj.
+
+use glam::{DVec3, Vec2, Vec3, vec2, vec3};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+use super::*;
+use crate::geometry::mesh::ABSENT;
+
+fn read(text: &str) -> ObjFile {
+    parse(text.as_bytes()).unwrap_or_else(|error| panic!("{text:?}: {error}"))
+}
+
+/// A triangle's lines, before which others may stand.
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+#[test]
+fn a_triangle_is_read() {
+    let file = read(TRIANGLE);
+    assert_eq!(file.positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
+    assert_eq!(file.triangles, [[0, 1, 2]]);
+    assert_eq!(file.slot_names, [None]);
+    assert_eq!(file.n_faces, 1);
+    assert!(file.uv_ids.is_empty() && file.normal_ids.is_empty() && file.slots.is_empty());
+    assert!(file.warnings.is_empty(), "{:?}", file.warnings);
+}
+
+#[test]
+fn all_spellings_of_a_line_mean_the_same() {
+    let expected = read(TRIANGLE);
+    let spellings = [
+        "\u{feff}v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3",
+        "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n",
+        "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r",
+        "v 0 \\\n0 0\nv 1 0 0\nv\\\r\n0 1\\\r0\nf 1 \\\n 2\\\n3",
+        "\t v\t0  0\t0 \nv 1 0 0 \x0b\n\n \n  v 0 1 0\t\nf\t1\t2 3 \t",
+        "# a \\\nv 0 0 0 # b\nv 1 0 0\n#c\nv 0 1 0\nf 1 2 3 #",
+        "v 0 0 0 0.1 0.2 0.3\nv 1 0 0 1 1 1 1\nv 0 1 0 9 9 9 9 9\nf 1 2 3",
+        "v 0 0 0 1\nv 2 0 0 2\nv 0 -1 0 -1\nf 1 2 3",
+        "v 0 0 0\nv 1. +0 -0.0\nv 0e5 1E0 0\nf -3 -2 -1",
+        "g a\no b\ns off\np 1\nl 1 2\nv 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 3\nf 1/ 2// 3",
+        "curv 0 1 \\\n v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 +3",
+    ];
+    for text in spellings {
+        let file = read(text);
+        assert_eq!(file.positions, expected.positions, "{text:?}");
+        assert_eq!(file.triangles, expected.triangles, "{text:?}");
+        assert!(file.warnings.is_empty(), "{text:?}: {:?}", file.warnings);
+    }
+}
+
+#[test]
+fn the_forms_of_corners_mix_within_a_face() {
+    let file = read(
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0.5\nvt 0.25 0.75 9\nvn 0 0 2\nvn 0 3 4\n\
+         f 1 2 3\nf 1 2/2 3//2 4/-2/-1\n",
+    );
+    assert_eq!(file.uvs, [vec2(0.5, 0.0), vec2(0.25, 0.75)]);
+    assert_eq!(file.normals, [Vec3::Z, vec3(0.0, 0.6, 0.8)]);
+    assert_eq!(file.triangles, [[0, 1, 2], [0, 1, 2], [0, 2, 3]]);
+    assert_eq!(file.uv_ids, [[ABSENT; 3], [ABSENT, 1, ABSENT], [ABSENT, ABSENT, 0]]);
+    assert_eq!(file.normal_ids, [[ABSENT; 3], [ABSENT, ABSENT, 1], [ABSENT, 1, 1]]);
+    assert_eq!(file.n_faces, 2);
+}
+
+#[test]
+fn negative_indices_count_from_the_face_backwards() {
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 0 0 1\nf -4 -2 -1\n";
+    assert_eq!(read(text).triangles, [[0, 1, 2], [0, 2, 3]]);
+}
+
+#[test]
+fn slots_are_in_order_of_first_use_by_a_face() {
+    let text = format!(
+        "{TRIANGLE}usemtl unused\nusemtl Material #25 \nf 1 2 3\nusemtl b\nf 1 2 3 1\n\
+         usemtl Material #25\nf 1 2 3\nusemtl\nf 3 2 1\n"
+    );
+    let file = read(&text);
+    assert_eq!(file.slot_names, [None, Some("Material #25".into()), Some("b".into())]);
+    assert_eq!(file.slots, [0, 1, 2, 2, 1, 0]);
+}
+
+#[test]
+fn one_slot_needs_no_array() {
+    let file = read(&format!("usemtl a\n{TRIANGLE}"));
+    assert_eq!(file.slot_names, [Some("a".into())]);
+    assert!(file.slots.is_empty());
+}
+
+#[test]
+fn libraries_may_be_several_and_hold_blanks() {
+    let text = format!(
+        "mtllib a.mtl\nmtllib a.mtl two words.MTL\tc.mtl \r\nmtllib d.mtl.old e\n{TRIANGLE}"
+    );
+    let expected = ["a.mtl", "two words.MTL", "c.mtl", "d.mtl.old e"];
+    assert_eq!(read(&text).libraries, expected);
+}
+
+#[test]
+fn zero_normals_are_absent_and_told() {
+    let file = read("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 1 0 0\nvn 0 0 0\nf 1//1 2//2 3//1\n");
+    assert_eq!(file.normal_ids, [[0, ABSENT, 0]]);
+    assert!(file.normals.iter().all(|n| n.length() == 1.0));
+    assert_eq!(file.warnings, ["line 5: `vn` has no direction; normals left out: 1"]);
+}
+
+#[test]
+fn tiny_and_huge_normals_have_unit_length() {
+    let file = read(&format!("vn 1e-44 0 0\nvn 0 3e38 3e38\n{TRIANGLE}"));
+    for normal in file.normals {
+        assert!((normal.length() - 1.0).abs() < 1e-6, "{normal}");
+    }
+}
+
+#[test]
+fn triangles_without_area_load_and_are_told() {
+    let file = read("v 0 0 0\nv 1 1 1\nv 2 2 2\nv 0 1 0\nf 1 2 3\nf 1 1 4\nf 1 2 4\n");
+    assert_eq!(file.triangles.len(), 3);
+    assert_eq!(file.warnings, ["2 of 3 triangles have no area and cannot be seen"]);
+}
+
+#[test]
+fn unknown_keywords_are_passed_over_and_told() {
+    let file = read(&format!("solid x\nfacet\nä 1\n{TRIANGLE}"));
+    assert_eq!(file.warnings, ["line 1: `solid` is not known; lines passed over: 3"]);
+}
+
+#[test]
+fn every_mistake_is_named_with_its_line() {
+    let cases: &[(&str, &str)] = &[
+        ("", "no triangles: the file has no `f` lines"),
+        ("v 0 0 0\n", "no triangles"),
+        ("solid cube\nfacet\n", "no `f` lines (line 1 starts with `solid`"),
+        ("\u{1}\u{2}\n", "line 1: `\\u{1}\\u{2}` is not text"),
+        ("# a\n\0\0\0", "line 2: `\\0\\0\\0` is not text"),
+        ("v 0 0\n", "line 1: `v` has 2 numbers; expected 3 numbers, 4 with"),
+        ("v\n", "line 1: `v` has 0 numbers"),
+        ("v 0 0 0 1 1\n", "line 1: `v` has 5 numbers"),
+        ("v 1 2 3 4 5 6 7 8 9\n", "line 1: `v` has more than 8 numbers"),
+        ("\n\nv 0 0 x\n", "line 3: `x` is not a number"),
+        ("v 0 0 1_0\n", "line 1: `1_0` is not a number"),
+        ("v 0 0 0x10\n", "line 1: `0x10` is not a number"),
+        ("v 0 0 1,5\n", "line 1: `1,5` is not a number"),
+        ("v 0 0 0 red\n", "line 1: `red` is not a number"),
+        ("v 0 0 \u{1b}[31m\n", "line 1: `\\u{1b}[31m` is not a number"),
+        ("v nan 0 0\n", "line 1: `nan` is not a finite number"),
+        ("v 0 -inf 0\n", "line 1: `-inf` is not a finite number"),
+        ("v 0 0 1e999\n", "line 1: `1e999` is not a finite number"),
+        ("v 0 0 0 nan nan nan\n", "line 1: `nan` is not a finite number"),
+        ("v 0 0 2e12\n", "line 1: coordinate `2e12` is out of range"),
+        ("v 0 0 -1e30\n", "line 1: coordinate `-1e30` is out of range"),
+        ("v 0 0 1 1e-30\n", "line 1: coordinate `1e30` is out of range"),
+        ("v 0 0 0 0\n", "line 1: the fourth number of `v`, its weight, is 0"),
+        ("v 0 0 0 -0.0\n", "line 1: the fourth number of `v`"),
+        ("vt\n", "line 1: `vt` has no number; expected 1 to 3"),
+        ("vt 1 2 3 4\n", "line 1: `vt` has more than 3 numbers"),
+        ("vt inf\n", "line 1: `inf` is not a finite number"),
+        ("vt 1e30\n", "line 1: coordinate `1e30` is out of range"),
+        ("vn 1 0\n", "line 1: `vn` has 2 numbers; expected 3"),
+        ("vn 1 0 0 0\n", "line 1: `vn` has more than 3 numbers"),
+        ("vn nan 0 0\n", "line 1: `nan` is not a finite number"),
+        ("v 0 0 0\nv 1 0 0\nf 1 2\n", "line 3: `f` has 2 corners; expected 3 or more"),
+        ("f\n", "line 1: `f` has 0 corners"),
+        ("v 0 0 0\nf 1 1 2\n", "line 2: `2` uses vertex 2, but only 1 are defined above it"),
+        ("v 0 0 0\nf 1 1 -2\n", "line 2: `-2` uses vertex -2, but only 1 are defined"),
+        ("f 1 2 3\nv 0 0 0\nv 0 0 0\nv 0 0 0\n", "line 1: `1` uses vertex 1, but only 0"),
+        ("v 0 0 0\nf 1/1 1 1\n", "line 2: `1/1` uses texture coordinate 1, but only 0 are"),
+        ("v 0 0 0\nvn 0 0 1\nf 1 1//-2 1\n", "line 3: `1//-2` uses normal -2, but only 1"),
+        ("v 0 0 0\nf 0 1 1\n", "line 2: `0` has index 0; they count from 1"),
+        ("v 0 0 0\nf 1 1/0 1\n", "line 2: `1/0` has index 0"),
+        ("v 0 0 0\nf 1 1 4294967297\n", "line 2: `4294967297` uses vertex 4294967297, but"),
+        ("v 0 0 0\nf 1 1 99999999999999999999\n", "line 2: `99999999999999999999` uses vertex"),
+        ("v 0 0 0\nf 1 1 x\n", "line 2: `x` is not a corner of a face; expected 1, 1/2"),
+        ("v 0 0 0\nf 1 1 1.5\n", "line 2: `1.5` is not a corner"),
+        ("v 0 0 0\nf 1 1 /1\n", "line 2: `/1` is not a corner"),
+        ("v 0 0 0\nf 1 1 1/1/1/1\n", "line 2: `1/1/1/1` is not a corner"),
+        ("v 0 0 0\nf 1 1 - 1\n", "line 2: `-` is not a corner"),
+        ("v 0 0 0\nf 1 \\\n1 y\n", "line 3: `y` is not a corner"),
+        ("v 0 0 0\rv 0 0\r", "line 2: `v` has 2 numbers"),
+        ("v 0 0 0\r\nv 0 0\r\n", "line 2: `v` has 2 numbers"),
+    ];
+    for (text, fragment) in cases {
+        let message = parse(text.as_bytes()).expect_err(text).to_string();
+        assert!(message.contains(fragment), "{text:?}: {message:?} lacks {fragment:?}");
+    }
+}
+
+#[test]
+fn files_of_other_kinds_are_named_as_such() {
+    let png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR";
+    let message = parse(png).unwrap_err().to_string();
+    assert_eq!(message, "line 1: `\\x89PNG` is not text; is this a Wavefront OBJ file?");
+    let utf16: Vec<u8> = "\u{feff}v 0 0 0\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    assert!(matches!(parse(&utf16), Err(ObjError::NotText { line: 1, .. })));
+}
+
+#[test]
+fn long_tokens_are_shortened_in_messages() {
+    let text = format!("v 0 0 {}\n", "x".repeat(100_000));
+    let message = parse(text.as_bytes()).unwrap_err().to_string();
+    assert!(message.len() < 100, "{message}");
+}
+
+#[test]
+fn concave_polygons_are_cut_by_ears() {
+    let text = "v 1 1 0\nv 0 4 0\nv 0 0 0\nv 4 0 0\nf 2 3 4 1\nf 1 2 3 4\n";
+    // The notch is the first vertex: the cut goes from there, wherever the face begins.
+    assert_eq!(read(text).triangles, [[0, 1, 2], [0, 2, 3], [0, 1, 2], [0, 2, 3]]);
+}
+
+#[test]
+fn a_mesh_has_the_normals_that_were_asked_for() {
+    let text = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn 1 0 0\nf 1//1 2//1 3//1\n";
+    let load = |kind| load_mesh(text.as_bytes(), kind, 180.0).unwrap();
+    let (mesh, notes) = load(NormalsKind::File);
+    assert_eq!((mesh.normals[0], mesh.normal_ids[0]), (Vec3::X, [0; 3]));
+    assert_eq!(notes.libraries, ["m.mtl"]);
+    let (mesh, _) = load(NormalsKind::Smooth);
+    assert_eq!(mesh.normal_ids[0].map(|id| mesh.normals[id as usize]), [Vec3::Z; 3]);
+    let (mesh, _) = load(NormalsKind::Flat);
+    assert!(mesh.normals.is_empty() && mesh.normal_ids.is_empty());
+}
+
+/// Meshes of the folder that the environment variable `PENUMBRA_MESHES` names, read by this
+/// reader and by tobj.
+#[test]
+fn real_meshes_are_read_as_tobj_reads_them() {
+    let Some(folder) = std::env::var_os("PENUMBRA_MESHES") else {
+        eprintln!("skipped: PENUMBRA_MESHES names no folder of OBJ files");
+        return;
+    };
+    let root = std::path::PathBuf::from(folder);
+    let table = std::fs::read_to_string(root.join("SOURCES.md")).unwrap_or_default();
+    let mut n_compared = 0;
+    let mut folders = vec![root.clone()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "obj") {
+                compare_with_tobj(&path);
+                let name = path.strip_prefix(&root).unwrap().to_str().unwrap();
+                compare_with_table(&path, name, &table);
+                n_compared += 1;
+            }
+        }
+    }
+    assert!(n_compared > 0, "no OBJ files there");
+}
+
+/// The table's rows start with file, source, `v` lines and triangles.
+fn compare_with_table(path: &std::path::Path, name: &str, table: &str) {
+    let row = table.lines().find_map(|line| line.strip_prefix(&format!("| {name} |")));
+    let Ok(file) = parse(&std::fs::read(path).unwrap()) else { return };
+    let Some(row) = row else { return };
+    let counts: Vec<_> = row.split('|').map(str::trim).skip(1).take(2).collect();
+    let found = [file.positions.len().to_string(), file.triangles.len().to_string()];
+    assert_eq!(counts, found, "{name}");
+}
+
+/// Position, texture coordinate and normal of a corner.
+type CornerValues = (Vec3, Option<Vec2>, Option<Vec3>);
+
+#[track_caller]
+fn compare_with_tobj(path: &std::path::Path) {
+    let bytes = std::fs::read(path).unwrap();
+    let polygons = polygons_by_tobj(&bytes);
+    if polygons.is_empty() {
+        assert!(matches!(parse(&bytes), Err(ObjError::NoTriangles { .. })), "{path:?}");
+        return;
+    }
+    let file = parse(&bytes).unwrap_or_else(|error| panic!("{path:?}: {error}"));
+    let mut triangles = (0..file.triangles.len()).map(|i| values_of(&file, i));
+    for (face, polygon) in polygons.iter().enumerate() {
+        let pieces: Vec<_> = triangles.by_ref().take(polygon.len() - 2).collect();
+        assert_eq!(pieces.len(), polygon.len() - 2, "{path:?}: face {face}");
+        for corner in pieces.iter().flatten() {
+            assert!(polygon.contains(corner), "{path:?}: face {face}: {corner:?} of {polygon:?}");
+        }
+        // However a polygon is cut, the sum of its pieces' vector areas is the same.
+        let area = |points: &[CornerValues]| -> DVec3 {
+            let from_first = |i: usize| (points[i].0 - points[0].0).as_dvec3();
+            (2..points.len()).map(|i| from_first(i - 1).cross(from_first(i))).sum()
+        };
+        let (found, whole) = (pieces.iter().map(|p| area(p)).sum::<DVec3>(), area(polygon));
+        let size = polygon.iter().map(|c| c.0.length()).fold(1.0, f32::max);
+        let slack = 1e-6 * f64::from(size) * f64::from(size);
+        assert!((found - whole).length() <= slack, "{path:?}: face {face}: {found} for {whole}");
+    }
+    assert_eq!(triangles.next(), None, "{path:?}: more triangles than tobj finds");
+}
+
+fn values_of(file: &ObjFile, triangle: usize) -> [CornerValues; 3] {
+    let pick = |ids: &[[u32; 3]], corner: usize| {
+        let id = ids.get(triangle).map(|ids| ids[corner]);
+        id.filter(|id| *id != ABSENT).map(|id| id as usize)
+    };
+    [0, 1, 2].map(|corner| {
+        let position = file.positions[file.triangles[triangle][corner] as usize];
+        let uv = pick(&file.uv_ids, corner).map(|id| file.uvs[id]);
+        (position, uv, pick(&file.normal_ids, corner).map(|id| file.normals[id]))
+    })
+}
+
+fn polygons_by_tobj(bytes: &[u8]) -> Vec<Vec<CornerValues>> {
+    let options =
+        tobj::LoadOptions { ignore_lines: true, ignore_points: true, ..Default::default() };
+    let no_library = |_: &std::path::Path| Ok(Default::default());
+    let (models, _) = tobj::load_obj_buf(&mut &bytes[..], &options, no_library).unwrap();
+    let mut polygons = Vec::new();
+    for mesh in models.into_iter().map(|model| model.mesh) {
+        let triple = |v: &[f32], id: u32| Vec3::from_slice(&v[3 * id as usize..]);
+        let mut corners = mesh.indices.iter().enumerate().map(|(i, id)| {
+            let uv = mesh.texcoord_indices.get(i);
+            let normal = mesh.normal_indices.get(i);
+            (
+                triple(&mesh.positions, *id),
+                uv.map(|id| Vec2::from_slice(&mesh.texcoords[2 * *id as usize..])),
+                normal.map(|id| triple(&mesh.normals, *id).as_dvec3().normalize().as_vec3()),
+            )
+        });
+        if mesh.face_arities.is_empty() {
+            polygons
+                .extend((0..mesh.indices.len() / 3).map(|_| corners.by_ref().take(3).collect()));
+        }
+        for n in mesh.face_arities {
+            polygons.push(corners.by_ref().take(n as usize).collect());
+        }
+    }
+    polygons
+}
+
+/// A valid file of every kind of line, to be broken.
+const VALID: &str = "\u{feff}mtllib a.mtl\r\n# c\nv 0 0 0\nv 1 0 0 1\nv 1 1.5e0 0 .1 .2 .3\nv 0 1 0\n\
+    vt 0 1\nvn 0 0 1\nusemtl m\nf 1 2 3 4\nf 1/1 2/-1/1 \\\n 3//1\ns 1\nl 1 2\nf -1 -2 -3 -4 1\n";
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        rng_seed: RngSeed::Fixed(1),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn no_bytes_make_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        let _ = parse(&bytes);
+    }
+
+    #[test]
+    fn no_text_makes_it_panic(
+        words in prop::collection::vec(
+            prop::sample::select(vec![
+                "v ", "vt ", "vn ", "f ", "usemtl ", "mtllib ", "\n", "\r", "\\\n", "\\", "#", "/",
+                "1 ", "-1", "2/", "3//1 ", "0.5 ", "1e", "nan ", "9999999999999999999999 ", "\t", "é",
+            ]), 0..60),
+    ) {
+        let _ = parse(words.concat().as_bytes());
+    }
+
+    #[test]
+    fn broken_files_give_a_mesh_or_an_error(
+        edits in prop::collection::vec((0usize..VALID.len(), any::<u8>()), 0..6),
+        cut in 0usize..VALID.len(),
+    ) {
+        let mut bytes = VALID.as_bytes().to_vec();
+        for (at, byte) in edits {
+            bytes[at] = byte;
+        }
+        bytes.truncate(cut.max(100));
+        if let Ok((mesh, _)) = load_mesh(&bytes, NormalsKind::File, 60.0) {
+            let within = |ids: &[[u32; 3]], n: usize| {
+                ids.as_flattened().iter().all(|id| *id == ABSENT || (*id as usize) < n)
+            };
+            prop_assert!(within(&mesh.triangles, mesh.positions.len()));
+            prop_assert!(within(&mesh.uv_ids, mesh.uvs.len()));
+            prop_assert!(within(&mesh.normal_ids, mesh.normals.len()));
+            prop_assert!(mesh.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-6));
+        }
+    }
+}

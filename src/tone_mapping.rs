@@ -1,0 +1,207 @@
+//! From linear light to the 8-bit sRGB picture that a display shows.
+//!
+//! Exposure, then one of four operators, then the sRGB transfer function, rounded to nearest, no
+//! dither. Negative light is black. This is display, not rendering: nothing here changes a film.
+
+use std::sync::OnceLock;
+
+use crate::color::linear_from_srgb;
+use crate::math::{approx, portable};
+use crate::scene::description::ToneOperator;
+
+/// Maps linear pixels to sRGB bytes. `exposure_ev` is in stops; `out` has the length of `pixels`.
+pub fn map_to_srgb8(
+    pixels: &[[f32; 3]],
+    exposure_ev: f32,
+    operator: ToneOperator,
+    out: &mut [[u8; 3]],
+) {
+    let gain = portable::exp2(exposure_ev);
+    let encoder = Encoder::get();
+    let map = |curve: fn([f32; 3]) -> [f32; 3], out: &mut [[u8; 3]]| {
+        for (pixel, bytes) in pixels.iter().zip(out) {
+            let exposed = pixel.map(|c| finite_light(c * gain));
+            *bytes = curve(exposed).map(|c| encoder.encode(c));
+        }
+    };
+    match operator {
+        ToneOperator::Linear => map(|c| c, out),
+        ToneOperator::Reinhard => map(|c| c.map(|x| x / (1.0 + x)), out),
+        ToneOperator::Aces => map(aces, out),
+        ToneOperator::Agx => map(agx, out),
+    }
+}
+
+/// Black for what is negative or no number, a large number for what is infinite.
+#[inline(always)]
+fn finite_light(x: f32) -> f32 {
+    // `max` and `min` drop NaN.
+    x.max(0.0).min(1e30)
+}
+
+/// Fit of the ACES reference rendering transform and output transform for sRGB displays.
+///
+/// Source: S. Hill, "ACES fitted", in the BakingLab of M. Pettineo, 2016.
+fn aces(c: [f32; 3]) -> [f32; 3] {
+    const INPUT: Matrix = [
+        [0.59719, 0.35458, 0.04823],
+        [0.07600, 0.90834, 0.01566],
+        [0.02840, 0.13383, 0.83777],
+    ];
+    const OUTPUT: Matrix = [
+        [1.60475, -0.53108, -0.07367],
+        [-0.10208, 1.10813, -0.00605],
+        [-0.00327, -0.07276, 1.07602],
+    ];
+    let curve = |v: f32| {
+        let v = v.min(1e15);
+        let a = v * (v + 0.024_578_6) - 0.000_090_537;
+        let b = v * (0.983_729 * v + 0.432_951_0) + 0.238_081;
+        a / b
+    };
+    multiply(&OUTPUT, multiply(&INPUT, c).map(curve))
+}
+
+/// AgX base look: Rec. 2020 primaries, an inset that makes bright colours lose saturation, a
+/// sigmoid over 16.5 stops of log light, and the way back; the display encoding (2.2) is undone.
+///
+/// Sources: T. Sobotka, "AgX", 2022, as adapted by E. Chow for Blender 4.0; sigmoid fitted by
+/// B. Wrensch, "Minimal AgX Implementation", 2023; constants of the Rec. 2020 version in Filament.
+fn agx(c: [f32; 3]) -> [f32; 3] {
+    const REC2020_FROM_REC709: Matrix =
+        [[0.6274, 0.3293, 0.0433], [0.0691, 0.9195, 0.0113], [0.0164, 0.0880, 0.8956]];
+    const REC709_FROM_REC2020: Matrix =
+        [[1.6605, -0.5876, -0.0728], [-0.1246, 1.1329, -0.0083], [-0.0182, -0.1006, 1.1187]];
+    const INSET: Matrix = [
+        [0.856_627_15, 0.095_121_24, 0.048_251_606],
+        [0.137_318_97, 0.761_242, 0.101_439_04],
+        [0.111_898_21, 0.076_799_42, 0.811_302_37],
+    ];
+    const OUTSET: Matrix = [
+        [1.127_100_6, -0.110_606_64, -0.016_493_939],
+        [-0.141_329_76, 1.157_823_7, -0.016_493_939],
+        [-0.141_329_76, -0.110_606_64, 1.251_936_4],
+    ];
+    const MIN_EV: f32 = -12.473_93;
+    const MAX_EV: f32 = 4.026_069;
+    let inset = multiply(&INSET, multiply(&REC2020_FROM_REC709, c));
+    let curved = inset.map(|x| {
+        let log = approx::log2(x.max(1e-10));
+        sigmoid(((log - MIN_EV) / (MAX_EV - MIN_EV)).clamp(0.0, 1.0))
+    });
+    let display = multiply(&OUTSET, curved).map(|x| approx::pow(x.max(0.0), 2.2));
+    multiply(&REC709_FROM_REC2020, display)
+}
+
+fn sigmoid(x: f32) -> f32 {
+    let (x2, x4) = (x * x, x * x * x * x);
+    15.5 * x4 * x2 - 40.14 * x4 * x + 31.96 * x4 - 6.868 * x2 * x + 0.4298 * x2 + 0.1191 * x
+        - 0.00232
+}
+
+/// Rows of a 3 x 3 matrix.
+type Matrix = [[f32; 3]; 3];
+
+#[inline(always)]
+fn multiply(m: &Matrix, c: [f32; 3]) -> [f32; 3] {
+    m.map(|row| row[0] * c[0] + row[1] * c[1] + row[2] * c[2])
+}
+
+/// The sRGB transfer function rounded to 8 bits, by the exact linear values at which the byte
+/// changes.
+struct Encoder {
+    /// `thresholds[k]` is the least linear value that becomes byte k + 1 or more.
+    thresholds: [f32; 256],
+    /// A byte at most 2 too low for linear values in each 1/1024.
+    starts: [u8; 1025],
+}
+
+impl Encoder {
+    fn get() -> &'static Self {
+        static ENCODER: OnceLock<Encoder> = OnceLock::new();
+        ENCODER.get_or_init(Self::new)
+    }
+
+    fn new() -> Self {
+        let mut thresholds = [f32::INFINITY; 256];
+        for (byte, threshold) in thresholds.iter_mut().take(255).enumerate() {
+            *threshold = linear_from_srgb((byte as f32 + 0.5) / 255.0);
+        }
+        let mut starts = [0; 1025];
+        for (cell, start) in starts.iter_mut().enumerate() {
+            let linear = cell as f32 / 1024.0;
+            *start = thresholds.iter().take_while(|t| **t <= linear).count() as u8;
+        }
+        Self { thresholds, starts }
+    }
+
+    #[inline(always)]
+    fn encode(&self, linear: f32) -> u8 {
+        let linear = linear.max(0.0).min(1.0);
+        let mut byte = self.starts[(linear * 1024.0) as usize];
+        while self.thresholds[usize::from(byte)] <= linear {
+            byte += 1;
+        }
+        byte
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::srgb_from_linear;
+
+    fn mapped(c: [f32; 3], operator: ToneOperator) -> [u8; 3] {
+        let mut out = [[0; 3]];
+        map_to_srgb8(&[c], 0.0, operator, &mut out);
+        out[0]
+    }
+
+    #[test]
+    fn bytes_are_the_rounded_transfer_function() {
+        let encoder = Encoder::get();
+        for i in 0..=100_000 {
+            let x = i as f32 / 100_000.0;
+            let exact = 255.0 * srgb_from_linear(x);
+            let byte = f32::from(encoder.encode(x));
+            assert!((byte - exact).abs() <= 0.5 + 1e-3, "{x} is {byte}, not {exact}");
+        }
+    }
+
+    #[test]
+    fn operators_know_black_and_white() {
+        for operator in
+            [ToneOperator::Linear, ToneOperator::Reinhard, ToneOperator::Aces, ToneOperator::Agx]
+        {
+            assert_eq!(mapped([0.0; 3], operator), [0; 3], "{operator:?} of black");
+            assert_eq!(mapped([-1.0, f32::NAN, 0.0], operator), [0; 3], "{operator:?} of no light");
+            let white = mapped([f32::INFINITY; 3], operator);
+            assert!(white.iter().all(|c| *c >= 250), "{operator:?} of the brightest is {white:?}");
+        }
+        assert_eq!(mapped([1.0, 0.5, 3.0], ToneOperator::Linear), [255, 188, 255], "linear");
+        assert_eq!(mapped([1.0; 3], ToneOperator::Reinhard), [188; 3], "reinhard halves 1");
+    }
+
+    #[test]
+    fn every_operator_rises_and_keeps_grey_grey() {
+        for operator in
+            [ToneOperator::Linear, ToneOperator::Reinhard, ToneOperator::Aces, ToneOperator::Agx]
+        {
+            let mut previous = 0;
+            for i in 0..400 {
+                let x = 1e-4 * 1.03_f32.powi(i);
+                let [r, g, b] = mapped([x; 3], operator);
+                assert!(r >= previous, "{operator:?} falls at {x}");
+                assert!(r.abs_diff(g) <= 1 && g.abs_diff(b) <= 1, "{operator:?} tints {x}");
+                previous = r;
+            }
+        }
+    }
+
+    #[test]
+    fn a_stop_of_exposure_doubles() {
+        let mut out = [[0; 3]];
+        map_to_srgb8(&[[0.25; 3]], 1.0, ToneOperator::Linear, &mut out);
+        assert_eq!(out[0], mapped([0.5; 3], ToneOperator::Linear), "0.25 at +1 EV");
+    }
+}
