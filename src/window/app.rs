@@ -8,6 +8,7 @@ use super::panels::{self, RenderFacts};
 use super::picture::PictureDisplay;
 use super::state::{InterfaceState, Remembered};
 use super::status::{PixelUnderCursor, StatusLine, Work, status_ui};
+use super::swatches::Swatches;
 use super::toasts::Toasts;
 use super::toolbar::{ToolbarChoice, ToolbarFacts, toolbar_ui};
 use super::viewport::{Click, physical_size, viewport_ui};
@@ -36,6 +37,7 @@ pub(super) struct App {
     pub(super) awaited_click: Option<Click>,
     pub(super) gesture: Gesture,
     picture: PictureDisplay,
+    swatches: Swatches,
     viewport: ViewportFacts,
 }
 
@@ -80,6 +82,7 @@ impl App {
             awaited_click: None,
             gesture: Gesture::default(),
             picture: PictureDisplay::new(wake(&cc.egui_ctx))?,
+            swatches: Swatches::new(wake(&cc.egui_ctx))?,
             viewport: ViewportFacts {
                 size: [1, 1],
                 zoom_percent: 100.0,
@@ -176,6 +179,7 @@ impl App {
     fn panel_ui(&mut self, ui: &mut Ui, scene: &mut SceneDescription) {
         let status = self.work.session.status();
         let interface = &mut self.interface;
+        let (swatches, assets) = (&mut self.swatches, &self.work.assets);
         let facts = RenderFacts {
             accelerators: &AcceleratorKind::ALL.map(AcceleratorKind::name),
             tree: tree_lines(status.tree.as_ref()),
@@ -196,11 +200,15 @@ impl App {
         });
         let summary = scene.materials.len().to_string();
         panels::section(ui, "Materials", &summary, true, |ui| {
-            panels::materials_ui(ui, scene, &mut interface.selection);
+            panels::materials_ui(ui, scene, &mut interface.selection, |ui, material, textures| {
+                swatches.ball_ui(ui, material, textures, assets);
+            });
         });
         let summary = scene.textures.len().to_string();
         panels::section(ui, "Textures", &summary, false, |ui| {
-            panels::textures_ui(ui, scene, &mut interface.selection);
+            panels::textures_ui(ui, scene, &mut interface.selection, |ui, texture| {
+                swatches.patch_ui(ui, texture, assets);
+            });
         });
         panels::section(ui, "Display", "", false, |ui| {
             let statistics = self.picture.statistics();

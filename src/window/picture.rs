@@ -112,7 +112,7 @@ fn display(order: &Order, bytes: &mut Vec<[u8; 3]>) -> Displayed {
     let picture = &order.frame.picture;
     bytes.clear();
     bytes.resize(picture.pixels.len(), [0; 3]);
-    map_to_srgb8(&picture.pixels, order.exposure, order.operator, bytes);
+    map_to_srgb8(&picture.pixels, order.exposure as f32, order.operator, bytes);
     let mut histogram = [[0_u32; 64]; 3];
     let pixels = bytes
         .iter()

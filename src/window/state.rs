@@ -49,7 +49,7 @@ impl Default for InterfaceState {
             is_paused: false,
             panel_shown: true,
             help_shown: false,
-            scene_unit_mm: 1000.0,
+            scene_unit_mm: 100.0,
             lens_when_open: None,
             recent: Vec::new(),
         }

@@ -140,7 +140,7 @@ fn set_visuals(visuals: &mut egui::Visuals, tones: &Tones) {
     visuals.striped = false;
     visuals.indent_has_left_vline = false;
     visuals.interact_cursor = None;
-    visuals.handle_shape = egui::style::HandleShape::Circle;
+    visuals.handle_shape = egui::style::HandleShape::Rect { aspect_ratio: 0.5 };
 
     let widgets = &mut visuals.widgets;
     let state = |fill, text, line| egui::style::WidgetVisuals {

@@ -321,14 +321,13 @@ fn name_cell(ui: &mut Ui, label: &str, help: &str) {
         return;
     }
     let layout = egui::Layout::left_to_right(egui::Align::Center);
-    let builder = egui::UiBuilder::new().max_rect(rect).layout(layout);
-    ui.scope_builder(builder, |ui| {
-        let text = egui::RichText::new(label).weak();
-        let response = ui.add(egui::Label::new(text).truncate());
-        if !help.is_empty() {
-            response.on_hover_text(help);
-        }
-    });
+    // A child of its own: the line goes on behind the whole column, however short the name.
+    let mut cell = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
+    let text = egui::RichText::new(label).weak();
+    let response = cell.add(egui::Label::new(text).truncate());
+    if !help.is_empty() {
+        response.on_hover_text(help);
+    }
 }
 
 #[cfg(test)]

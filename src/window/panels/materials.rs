@@ -3,7 +3,8 @@
 use super::parts::part_list;
 use super::{Selection, path_segment, subheading};
 use crate::scene::description::{
-    BumpDescription, ColorOrTexture, MaterialDescription, SceneDescription, WardForm,
+    BumpDescription, ColorOrTexture, MaterialDescription, SceneDescription, TextureDescription,
+    TextureKind, WardForm,
 };
 use crate::window::color::{color_row, strength_and_tint};
 use crate::window::presets;
@@ -33,6 +34,7 @@ pub(in crate::window) fn materials_ui(
     ui: &mut Ui,
     scene: &mut SceneDescription,
     selection: &mut Selection,
+    preview: impl FnOnce(&mut Ui, &MaterialDescription, &[TextureDescription]),
 ) {
     let index =
         part_list(ui, scene, Part::Material, &mut selection.material, &mut selection.renaming);
@@ -42,12 +44,13 @@ pub(in crate::window) fn materials_ui(
         .map(|texture| (texture.name.clone(), can_bump(texture.kind)))
         .collect();
     if let Some(material) = index.and_then(|index| scene.materials.get_mut(index)) {
+        ui.vertical_centered(|ui| preview(ui, material, &scene.textures));
         material_ui(ui, material, &textures, &mut selection.alphas_linked);
     }
 }
 
-fn can_bump(kind: crate::scene::description::TextureKind) -> bool {
-    kind.is_noise() || kind == crate::scene::description::TextureKind::Image
+fn can_bump(kind: TextureKind) -> bool {
+    kind.is_noise() || kind == TextureKind::Image
 }
 
 fn material_ui(
