@@ -12,3 +12,5 @@ pub mod scene;
 pub mod io;
 pub mod render;
 pub mod tone_mapping;
+
+pub mod document;
