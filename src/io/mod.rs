@@ -1,7 +1,13 @@
 //! Files: what a scene names, read with every limit checked before memory is taken.
 
 mod excerpt;
+pub mod files;
+pub mod folder;
+pub mod gallery;
+pub mod mtl;
 pub mod obj;
+pub mod output;
 pub mod scene_file;
+pub mod snapshot;
 
 pub use excerpt::excerpt;

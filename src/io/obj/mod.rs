@@ -4,7 +4,8 @@
 //! materials and libraries. Smoothing groups, groups, lines, points, curves and vertex colours are
 //! passed over. Nothing here touches the disk.
 //!
-//! Memory is bounded by the file: no line makes more than six times its bytes of arrays.
+//! Memory grows with the file and no faster: its arrays are usually smaller than its text, and at
+//! worst, where faces have very many corners of one digit, some forty times as large.
 
 mod cursor;
 mod error;

@@ -1,0 +1,130 @@
+//! Where the files of a scene are looked for, and a record of what was read.
+
+use std::path::{Component, Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use crate::io::files::{FileError, read_file};
+use crate::io::gallery;
+
+/// Largest mesh, image or library that is read, in bytes.
+pub const LARGEST_ASSET: u64 = 4 << 30;
+
+/// The place that a scene's relative paths start from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Folder {
+    /// A folder of the file system.
+    Disk(PathBuf),
+    /// The `scenes` folder inside the program.
+    Gallery,
+    /// A snapshot's files: each is taken from the first place where it is unchanged.
+    Snapshot {
+        /// The folder that the scene was opened from, where the snapshot says so.
+        recorded: Option<Box<Folder>>,
+        /// The folder of the PNG.
+        beside: PathBuf,
+        /// What the files were.
+        files: Vec<FileRecord>,
+    },
+}
+
+/// One file that a scene used.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FileRecord {
+    /// As the scene names it, relative to its folder.
+    pub file: String,
+    /// Length in bytes.
+    pub size: u64,
+    /// SHA-256 in hexadecimal.
+    pub sha256: String,
+}
+
+impl FileRecord {
+    /// The record of a file's content.
+    pub fn of(file: &str, bytes: &[u8]) -> Self {
+        let sha256 = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+        Self { file: file.to_owned(), size: bytes.len() as u64, sha256 }
+    }
+}
+
+impl Folder {
+    /// The folder that a file lies in.
+    pub fn of(path: &Path) -> Self {
+        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+        Self::Disk(parent.unwrap_or(Path::new(".")).to_owned())
+    }
+
+    /// Reads a file named relative to this folder.
+    ///
+    /// # Errors
+    /// When it is not there, is no regular file, or is longer than [`LARGEST_ASSET`].
+    pub fn read(&self, file: &str) -> Result<Vec<u8>, FileError> {
+        match self {
+            Self::Disk(folder) => read_file(&folder.join(file), LARGEST_ASSET),
+            Self::Gallery => {
+                let path = normalised(&Path::new("scenes").join(file));
+                gallery::file(&path)
+                    .map(<[u8]>::to_vec)
+                    .ok_or_else(|| FileError::not_found(Path::new(file)))
+            }
+            Self::Snapshot { recorded, beside, files } => {
+                read_unchanged(recorded.as_deref(), beside, files, file)
+            }
+        }
+    }
+
+    /// Where a file named relative to this folder is on disk, for watching it.
+    pub fn disk_path(&self, file: &str) -> Option<PathBuf> {
+        match self {
+            Self::Disk(folder) => Some(folder.join(file)),
+            Self::Gallery | Self::Snapshot { .. } => None,
+        }
+    }
+}
+
+fn read_unchanged(
+    recorded: Option<&Folder>,
+    beside: &Path,
+    files: &[FileRecord],
+    file: &str,
+) -> Result<Vec<u8>, FileError> {
+    let wanted = files.iter().find(|record| record.file == file);
+    let disk = |path: PathBuf| move || read_file(&path, LARGEST_ASSET);
+    let name = Path::new(file).file_name().map_or_else(|| beside.join(file), |n| beside.join(n));
+    let recorded = || match recorded {
+        Some(folder) => folder.read(file),
+        None => Err(FileError::not_found(Path::new(file))),
+    };
+    let places: [Box<dyn Fn() -> Result<Vec<u8>, FileError> + '_>; 4] = [
+        Box::new(recorded),
+        Box::new(disk(beside.join(file))),
+        Box::new(disk(name)),
+        Box::new(|| Folder::Gallery.read(file)),
+    ];
+    let mut is_changed = false;
+    for place in places {
+        let Ok(bytes) = place() else { continue };
+        match wanted {
+            Some(record) if *record != FileRecord::of(file, &bytes) => is_changed = true,
+            Some(_) | None => return Ok(bytes),
+        }
+    }
+    let path = beside.join(file);
+    Err(if is_changed { FileError::changed(&path) } else { FileError::not_found(&path) })
+}
+
+/// The path with `.` and `..` worked out, `/` between its parts.
+fn normalised(path: &Path) -> String {
+    let mut parts: Vec<String> = Vec::new();
+    for component in path.components() {
+        match component {
+            Component::Normal(part) => parts.push(part.to_string_lossy().into_owned()),
+            Component::ParentDir => {
+                parts.pop();
+            }
+            Component::CurDir | Component::RootDir | Component::Prefix(_) => {}
+        }
+    }
+    parts.join("/")
+}

@@ -1,0 +1,157 @@
+//! A picture that carries the scene that made it.
+//!
+//! Two text chunks of a PNG: `penumbra:scene`, the scene file with its size and samples as
+//! rendered and its paths as written; and `penumbra:render`, JSON with the program's version, the
+//! samples, the seed, the files used with size and hash, and, where made in the window, the folder
+//! that the scene was opened from.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::io::folder::{FileRecord, Folder};
+use crate::io::output::TextChunk;
+use crate::io::scene_file;
+use crate::scene::description::SceneDescription;
+
+const SCENE: &str = "penumbra:scene";
+const RENDER: &str = "penumbra:render";
+/// Text chunks are read up to this many bytes.
+const LARGEST_TEXT: usize = 64 << 20;
+
+/// What a snapshot says of how it was made.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RenderRecord {
+    /// Of the program.
+    pub version: String,
+    /// Samples a pixel.
+    pub samples: u32,
+    /// Seed of all numbers.
+    pub seed: u32,
+    /// What the scene used.
+    pub files: Vec<FileRecord>,
+    /// The folder that the scene was opened from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub folder: Option<RecordedFolder>,
+}
+
+/// A folder in a snapshot.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum RecordedFolder {
+    /// Inside the program.
+    Gallery,
+    /// On disk.
+    Path(PathBuf),
+}
+
+/// A snapshot that was read.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    /// The scene file's text.
+    pub scene: String,
+    /// How it was made.
+    pub record: RenderRecord,
+    /// Where its files are looked for.
+    pub folder: Folder,
+}
+
+/// Why a PNG is no snapshot.
+#[derive(Debug, thiserror::Error)]
+pub enum SnapshotError {
+    /// No PNG at all.
+    #[error("is not a readable PNG: {0}")]
+    Png(#[from] png::DecodingError),
+    /// A PNG without a scene.
+    #[error("carries no scene; only pictures saved by penumbra do")]
+    NoScene,
+    /// The record is damaged.
+    #[error("carries a damaged record: {0}")]
+    Record(String),
+}
+
+/// The text chunks of a picture of this description at `samples` samples; `folder` is given by the
+/// window only.
+///
+/// # Errors
+/// Never in practice: when the record cannot be written as JSON.
+pub fn texts(
+    description: &SceneDescription,
+    (width, height): (u32, u32),
+    samples: u32,
+    files: &[FileRecord],
+    folder: Option<&Folder>,
+) -> Result<Vec<TextChunk>, serde_json::Error> {
+    let mut description = description.clone();
+    description.render.width = width;
+    description.render.height = height;
+    description.render.samples = samples;
+    let folder = match folder {
+        Some(Folder::Disk(path)) => {
+            Some(RecordedFolder::Path(std::path::absolute(path).unwrap_or(path.clone())))
+        }
+        Some(Folder::Gallery) => Some(RecordedFolder::Gallery),
+        Some(Folder::Snapshot { beside, .. }) => Some(RecordedFolder::Path(beside.clone())),
+        None => None,
+    };
+    let record = RenderRecord {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        samples,
+        seed: description.render.seed,
+        files: files.to_vec(),
+        folder,
+    };
+    Ok(vec![
+        (SCENE, scene_file::write(&description)),
+        (RENDER, serde_json::to_string(&record)?),
+    ])
+}
+
+/// Reads the scene out of a PNG's bytes; `path` is where it lies.
+///
+/// # Errors
+/// When it is no PNG, or carries no scene.
+pub fn read(bytes: &[u8], path: &Path) -> Result<Snapshot, SnapshotError> {
+    let limits = png::Limits { bytes: LARGEST_TEXT };
+    let mut decoder = png::Decoder::new_with_limits(std::io::Cursor::new(bytes), limits);
+    decoder.set_transformations(png::Transformations::IDENTITY);
+    let reader = decoder.read_info()?;
+    let text = |keyword: &str| {
+        let chunk = reader.info().utf8_text.iter().find(|chunk| chunk.keyword == keyword);
+        chunk.and_then(|chunk| chunk.get_text().ok())
+    };
+    let scene = text(SCENE).ok_or(SnapshotError::NoScene)?;
+    let record = text(RENDER).ok_or(SnapshotError::NoScene)?;
+    let record: RenderRecord = serde_json::from_str(&record)
+        .map_err(|error| SnapshotError::Record(error.to_string()))?;
+    let beside = match Folder::of(path) {
+        Folder::Disk(folder) => folder,
+        Folder::Gallery | Folder::Snapshot { .. } => PathBuf::from("."),
+    };
+    let recorded = record.folder.as_ref().map(|folder| {
+        Box::new(match folder {
+            RecordedFolder::Gallery => Folder::Gallery,
+            RecordedFolder::Path(path) => Folder::Disk(path.clone()),
+        })
+    });
+    let folder = Folder::Snapshot { recorded, beside, files: record.files.clone() };
+    Ok(Snapshot { scene, record, folder })
+}
+
+/// The 8-bit RGB bytes of a PNG with its width and height.
+///
+/// # Errors
+/// When it is no such PNG.
+pub fn read_pixels(bytes: &[u8]) -> Result<(u32, u32, Vec<u8>), SnapshotError> {
+    let decoder = png::Decoder::new(std::io::Cursor::new(bytes));
+    let mut reader = decoder.read_info()?;
+    let size = reader.output_buffer_size().unwrap_or(0);
+    let mut pixels = vec![0; size];
+    let info = reader.next_frame(&mut pixels)?;
+    pixels.truncate(info.buffer_size());
+    let is_rgb8 = info.color_type == png::ColorType::Rgb && info.bit_depth == png::BitDepth::Eight;
+    if !is_rgb8 {
+        return Err(SnapshotError::Record("the picture is not 8-bit RGB".to_owned()));
+    }
+    Ok((info.width, info.height, pixels))
+}
