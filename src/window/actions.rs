@@ -2,7 +2,7 @@
 
 use super::app::App;
 use super::dialogs::{Purpose, UnsavedAnswer, unsaved_question};
-use super::files::{Pending, Written, file_title, source_title};
+use super::files::{Pending, Written, file_title};
 use super::keys::Action;
 use super::toolbar::ToolbarChoice;
 use super::viewport::Click;
@@ -12,6 +12,7 @@ use crate::scene::description::{SceneDescription, ToneOperator};
 use crate::scene::orbit::{self, StandardView};
 use egui::ViewportCommand;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 impl App {
     /// Does what a key, a button or a menu asks for.
@@ -38,18 +39,22 @@ impl App {
                 scene.tone_mapping.operator = next_operator(scene.tone_mapping.operator);
             }
             Action::ToggleLens => self.toggle_lens(scene),
-            Action::Snapshot => self.snapshot(ctx),
+            Action::Snapshot => self.snapshot(),
             Action::Save => self.save_scene(ctx),
             Action::SaveAs => self.files.ask_where_to_save(ctx, &mut self.dialogs),
             Action::Open => self.dialogs.ask(ctx, Purpose::Open, ""),
             Action::CopyImage => self.copy_picture(ctx),
             Action::Undo => {
-                self.document.undo();
-                *scene = self.document.description().clone();
+                if let Some(step) = self.document.undo() {
+                    self.toasts.say(format!("undone: {step}"));
+                }
+                scene.clone_from(&self.document.description);
             }
             Action::Redo => {
-                self.document.redo();
-                *scene = self.document.description().clone();
+                if let Some(step) = self.document.redo() {
+                    self.toasts.say(format!("done again: {step}"));
+                }
+                scene.clone_from(&self.document.description);
             }
             Action::TogglePanel => self.interface.panel_shown = !self.interface.panel_shown,
             Action::FullScreen => {
@@ -101,12 +106,14 @@ impl App {
         }
         while let Some(written) = self.files.take_written() {
             match written {
-                Written::Scene(path) => {
+                Written::Scene { path, description } => {
                     self.toasts.say(format!("saved {}", path.display()));
                     self.files.title = file_title(&path);
                     self.interface.remember_file(path.clone());
+                    if *description == self.document.description {
+                        self.document.mark_saved(&path);
+                    }
                     self.files.scene_path = Some(path);
-                    self.document.mark_saved();
                     self.go_on(ctx);
                 }
                 Written::Snapshot(path) => {
@@ -114,6 +121,7 @@ impl App {
                 }
                 Written::Failed(reason) => {
                     self.files.pending = None;
+                    self.files.is_saving_first = false;
                     self.toasts.fail(reason);
                 }
             }
@@ -184,10 +192,12 @@ impl App {
     }
 
     fn take_scene(&mut self, ctx: &egui::Context, loaded: Loaded) {
-        let Loaded { source, description, assets, report } = loaded;
+        let Loaded { source, folder, description, assets, files, report, snapshot: _ } = loaded;
         self.files.loading = None;
         self.files.has_scene = true;
-        self.files.title = source_title(&source);
+        self.files.title = source.stem();
+        self.files.folder = folder;
+        self.files.records = files;
         self.files.scene_path = None;
         if let Source::File(path) = &source {
             self.interface.remember_file(path.clone());
@@ -204,8 +214,8 @@ impl App {
         self.files.report = report;
         self.home_camera = description.camera.clone();
         self.interface.forget_scene();
-        self.work.set_assets(assets);
-        self.document = Document::new(description);
+        self.work.set_assets(Arc::new(assets));
+        self.document = Document::new(description, self.files.scene_path.clone());
         self.gesture.next();
         ctx.send_viewport_cmd(ViewportCommand::Title(format!("{} – Penumbra", self.files.title)));
     }

@@ -19,9 +19,11 @@ use crate::geometry::{AcceleratorKind, TreeStatistics};
 use crate::loader::{Loader, Source};
 use crate::scene::description::{CameraDescription, SceneDescription};
 use crate::io::gallery::GALLERY;
+use crate::io::scene_file;
 use crate::session::{Frame, Phase, Session};
 use crate::threads;
 use egui::{Margin, Panel, Ui};
+use std::sync::Arc;
 
 /// The whole window.
 pub(super) struct App {
@@ -36,6 +38,8 @@ pub(super) struct App {
     /// The click whose answer from the renderer is awaited.
     pub(super) awaited_click: Option<Click>,
     pub(super) gesture: Gesture,
+    /// Whether the next full picture is written to a file.
+    pub(super) snapshot_wanted: bool,
     picture: PictureDisplay,
     swatches: Swatches,
     viewport: ViewportFacts,
@@ -73,13 +77,14 @@ impl App {
         let empty = empty_scene();
         Ok(Self {
             home_camera: empty.camera.clone(),
-            document: Document::new(empty),
+            document: Document::new(empty, None),
             interface: remembered.restore(),
             files,
             work: RenderWork::new(session),
             dialogs: PathDialogs::default(),
             toasts: Toasts::default(),
             awaited_click: None,
+            snapshot_wanted: false,
             gesture: Gesture::default(),
             picture: PictureDisplay::new(wake(&cc.egui_ctx))?,
             swatches: Swatches::new(wake(&cc.egui_ctx))?,
@@ -132,7 +137,8 @@ impl App {
         let facts = ToolbarFacts {
             title: &self.files.title,
             has_unsaved: self.document.is_dirty(),
-            can_undo: (self.document.can_undo(), self.document.can_redo()),
+            undo: self.document.undo_label(),
+            redo: self.document.redo_label(),
             is_paused: self.interface.is_paused,
             panel_shown: self.interface.panel_shown,
             gallery: &titles,
@@ -273,12 +279,30 @@ impl App {
         }
     }
 
+    /// Makes what the panels did a step of undo. What no scene file could say is not taken over:
+    /// the scene stays at its last valid state.
+    fn take_edit(&mut self, scene: SceneDescription) {
+        if scene == self.document.description {
+            return;
+        }
+        if let Err(fault) = scene_file::validate(&scene) {
+            self.toasts.say(fault.to_string());
+            return;
+        }
+        let label = edit_label(&self.document.description, &scene);
+        self.document.description = scene;
+        self.document.checkpoint(label, Some(self.gesture.id()));
+    }
+
+    /// The bytes on show.
+    pub(super) fn picture_on_show(&self) -> Option<&Arc<egui::ColorImage>> {
+        self.picture.image()
+    }
+
     /// Takes over what changed in `scene`, makes it the job, and shows the newest picture.
     fn render(&mut self, ctx: &egui::Context, scene: SceneDescription) {
-        if scene != *self.document.description() {
-            self.document.edit(scene, self.gesture.id());
-        }
-        let description = self.document.description();
+        self.take_edit(scene);
+        let description = &self.document.description;
         if self.files.has_scene {
             let submitted = self.work.submit(description, &self.interface, self.viewport.size);
             if let Err(error) = submitted {
@@ -290,6 +314,7 @@ impl App {
             self.picture.show(&frame, &description.tone_mapping);
             let noise = self.work.session.status().noise_percent;
             self.work.note_noise(frame.generation, frame.samples, noise);
+            self.take_snapshot(ctx, &frame);
         }
         self.picture.update(ctx);
     }
@@ -304,7 +329,7 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         self.gesture.update(&ctx);
-        let mut scene = self.document.description().clone();
+        let mut scene = self.document.description.clone();
         for action in keys::pressed(&ctx, self.viewport.flying) {
             self.do_action(&ctx, &mut scene, action);
         }
@@ -323,6 +348,27 @@ impl eframe::App for App {
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         eframe::set_value(storage, Remembered::KEY, &Remembered::of(&self.interface));
+    }
+}
+
+/// What undo would say it undoes.
+fn edit_label(before: &SceneDescription, after: &SceneDescription) -> &'static str {
+    if before.camera != after.camera {
+        "camera"
+    } else if before.lights != after.lights {
+        "light"
+    } else if before.materials != after.materials {
+        "material"
+    } else if before.textures != after.textures {
+        "texture"
+    } else if before.objects != after.objects {
+        "object"
+    } else if before.environment != after.environment {
+        "background"
+    } else if before.tone_mapping != after.tone_mapping {
+        "exposure and curve"
+    } else {
+        "render settings"
     }
 }
 

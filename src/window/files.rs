@@ -1,7 +1,9 @@
 //! Opening, saving and snapshots: what is under way and what came of it, on threads of their own.
 
 use super::dialogs::{PathDialogs, Purpose};
+use crate::io::folder::{FileRecord, Folder};
 use crate::loader::{Loader, Source};
+use crate::scene::description::SceneDescription;
 use crate::threads;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -13,8 +15,10 @@ pub(super) struct FileWork {
     pub(super) title: String,
     /// The scene file that "save" writes; `None` where there is none yet.
     pub(super) scene_path: Option<PathBuf>,
-    /// The folder that the scene's paths are relative to.
-    pub(super) folder: Option<PathBuf>,
+    /// Where the scene's relative paths start from.
+    pub(super) folder: Folder,
+    /// The files that the scene uses.
+    pub(super) records: Vec<FileRecord>,
     /// What loading had to repair or leave out.
     pub(super) report: Vec<String>,
     /// Name of what is being loaded.
@@ -41,10 +45,15 @@ pub(super) enum Pending {
 }
 
 /// The end of a task that wrote a file.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum Written {
-    /// The scene is in that file now.
-    Scene(PathBuf),
+    /// The scene as it was then is in that file now.
+    Scene {
+        /// Where.
+        path: PathBuf,
+        /// As the window knew it.
+        description: Box<SceneDescription>,
+    },
     /// The picture is in that file.
     Snapshot(PathBuf),
     /// Nothing was written, for that reason.
@@ -59,7 +68,8 @@ impl FileWork {
             loader,
             title: "untitled".to_owned(),
             scene_path: None,
-            folder: None,
+            folder: Folder::Gallery,
+            records: Vec::new(),
             report: Vec::new(),
             loading: None,
             has_scene: false,
@@ -73,7 +83,7 @@ impl FileWork {
 
     /// Starts loading; the scene that is open stays until the new one is ready.
     pub(super) fn open(&mut self, source: Source) {
-        self.loading = Some(source_title(&source));
+        self.loading = Some(source.stem());
         self.loader.open(source);
     }
 
@@ -111,14 +121,6 @@ impl FileWork {
     /// Asks where to save.
     pub(super) fn ask_where_to_save(&self, ctx: &egui::Context, dialogs: &mut PathDialogs) {
         dialogs.ask(ctx, Purpose::SaveScene, &format!("{}.toml", self.title));
-    }
-}
-
-/// What a source is called in the window.
-pub(super) fn source_title(source: &Source) -> String {
-    match source {
-        Source::File(path) => file_title(path),
-        Source::Gallery(name) => (*name).to_owned(),
     }
 }
 

@@ -19,6 +19,7 @@ mod output;
 mod panels;
 mod picture;
 mod presets;
+mod relocate;
 mod state;
 mod status;
 mod structure;

@@ -12,8 +12,10 @@ pub(super) struct ToolbarFacts<'a> {
     pub(super) title: &'a str,
     /// Whether it has edits that no file holds.
     pub(super) has_unsaved: bool,
-    /// Whether there is an edit to take back, and one to make again.
-    pub(super) can_undo: (bool, bool),
+    /// What undo would take back, if anything.
+    pub(super) undo: Option<&'a str>,
+    /// What redo would make again, if anything.
+    pub(super) redo: Option<&'a str>,
     /// Whether refining is held.
     pub(super) is_paused: bool,
     /// Whether the panel is shown.
@@ -49,8 +51,13 @@ pub(super) fn toolbar_ui(
         ui.spacing_mut().item_spacing.x = 4.0;
         menus(ui, facts, &mut chosen);
         ui.add_space(8.0);
-        button(ui, "Undo", "takes the last edit back", Action::Undo, facts.can_undo.0, &mut chosen);
-        button(ui, "Redo", "makes it again", Action::Redo, facts.can_undo.1, &mut chosen);
+        let told = |verb: &str, step: Option<&str>| match step {
+            Some(step) => format!("{verb}: {step}"),
+            None => format!("nothing to {verb}"),
+        };
+        let (undo, redo) = (told("undo", facts.undo), told("redo", facts.redo));
+        button(ui, "Undo", &undo, Action::Undo, facts.undo.is_some(), &mut chosen);
+        button(ui, "Redo", &redo, Action::Redo, facts.redo.is_some(), &mut chosen);
         ui.add_space(8.0);
         let pause = if facts.is_paused { "Resume" } else { "Pause" };
         button(ui, pause, "holds the picture, or goes on", Action::Pause, true, &mut chosen);

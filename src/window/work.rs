@@ -9,7 +9,7 @@ use crate::render::{RenderJob, RenderSettings};
 use crate::scene::description::SceneDescription;
 use crate::scene::resolve::{ResolveError, resolve};
 use crate::scene::{Assets, Scene};
-use crate::session::{Goal, Session};
+use crate::session::{Frame, Goal, Session};
 use std::sync::Arc;
 
 /// Noise estimates kept for the graph.
@@ -20,6 +20,7 @@ pub(super) struct RenderWork {
     pub(super) session: Session,
     pub(super) assets: Arc<Assets>,
     resolved: Option<Resolved>,
+    job: Option<RenderJob>,
     /// (samples, noise in percent) of the picture being refined.
     pub(super) noise: Vec<(u32, f64)>,
     noise_of: u64,
@@ -37,6 +38,7 @@ impl RenderWork {
             session,
             assets: Arc::default(),
             resolved: None,
+            job: None,
             noise: Vec::new(),
             noise_of: 0,
         }
@@ -91,8 +93,14 @@ impl RenderWork {
             settings: RenderSettings::new(render, accelerator),
         };
         let goal = Goal { samples: render.samples, seconds: None, noise_percent: None };
+        self.job = Some(job.clone());
         self.session.submit(job, goal);
         Ok(())
+    }
+
+    /// Whether a frame shows the scene as it is now.
+    pub(super) fn is_current(&self, frame: &Frame) -> bool {
+        self.job.as_ref() == Some(&frame.job)
     }
 
     /// Keeps the newest estimate of the noise for the graph; another picture starts it anew.
