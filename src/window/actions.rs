@@ -7,9 +7,11 @@ use super::keys::Action;
 use super::toolbar::ToolbarChoice;
 use super::viewport::Click;
 use crate::document::Document;
-use crate::loader::{Loaded, Source};
+use crate::loader::{LoadError, Loaded, Source};
 use crate::scene::description::{SceneDescription, ToneOperator};
+use crate::scene::Assets;
 use crate::scene::orbit::{self, StandardView};
+use crate::scene::resolve::ResolveError;
 use egui::ViewportCommand;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -97,10 +99,12 @@ impl App {
     /// Takes what the loader and the writers have finished.
     pub(super) fn take_results(&mut self, ctx: &egui::Context) {
         match self.files.loader.take() {
-            None => {}
+            None | Some(Err(LoadError::Cancelled)) => {}
+            Some(Ok(loaded)) if self.files.is_completing => self.take_assets(loaded),
             Some(Ok(loaded)) => self.take_scene(ctx, loaded),
             Some(Err(failure)) => {
                 self.files.loading = None;
+                self.files.is_completing = false;
                 self.toasts.fail(failure.to_string());
             }
         }
@@ -197,6 +201,8 @@ impl App {
         self.files.has_scene = true;
         self.files.title = source.stem();
         self.files.folder = folder;
+        self.files.source = Some(source.clone());
+        self.files.missing = None;
         self.files.records = files;
         self.files.scene_path = None;
         if let Source::File(path) = &source {
@@ -218,6 +224,41 @@ impl App {
         self.document = Document::new(description, self.files.scene_path.clone());
         self.gesture.next();
         ctx.send_viewport_cmd(ViewportCommand::Title(format!("{} – Penumbra", self.files.title)));
+    }
+
+    /// Takes the files that an edit made necessary; the edit itself is in the document.
+    fn take_assets(&mut self, loaded: Loaded) {
+        self.files.loading = None;
+        self.files.is_completing = false;
+        self.files.records = loaded.files;
+        self.work.set_assets(Arc::new(loaded.assets));
+    }
+
+    /// Loads what the edited scene names and nobody has read yet.
+    pub(super) fn load_missing(&mut self, missing: ResolveError) {
+        let is_file = match &missing {
+            ResolveError::Mesh(_) | ResolveError::Image(_) => true,
+            ResolveError::Invalid { .. } => false,
+        };
+        if self.files.missing.as_ref() == Some(&missing) {
+            return;
+        }
+        if !is_file {
+            self.toasts.fail(format!("cannot render this scene: {missing}"));
+        } else if let Some(source) = self.files.source.clone() {
+            self.files.is_completing = true;
+            self.files.loading = Some("what the edit needs".to_owned());
+            self.files.loader.complete(Loaded {
+                source,
+                folder: self.files.folder.clone(),
+                description: self.document.description.clone(),
+                assets: Assets::clone(&self.work.assets),
+                files: self.files.records.clone(),
+                report: Vec::new(),
+                snapshot: None,
+            });
+        }
+        self.files.missing = Some(missing);
     }
 
     fn go_on(&mut self, ctx: &egui::Context) {

@@ -72,7 +72,7 @@ impl App {
         // One processor is left to the window itself.
         let n_threads = threads::available().saturating_sub(1).max(1);
         let session = Session::new(n_threads, wake(&cc.egui_ctx));
-        let mut files = FileWork::new(Loader::new(wake(&cc.egui_ctx)));
+        let mut files = FileWork::new(Loader::new(wake(&cc.egui_ctx))?);
         files.open(first);
         let empty = empty_scene();
         Ok(Self {
@@ -173,9 +173,6 @@ impl App {
         ui.horizontal_centered(|ui| {
             ui.spinner();
             ui.label(egui::RichText::new(format!("loading {name}")).strong());
-            if let Some(share) = self.files.loader.progress() {
-                ui.label(egui::RichText::new(format!("{} %", (share * 100.0) as u32)).weak());
-            }
             if ui.button("Cancel").on_hover_text("keeps the scene that is open (Esc)").clicked() {
                 self.files.cancel_loading();
             }
@@ -302,16 +299,17 @@ impl App {
     /// Takes over what changed in `scene`, makes it the job, and shows the newest picture.
     fn render(&mut self, ctx: &egui::Context, scene: SceneDescription) {
         self.take_edit(scene);
-        let description = &self.document.description;
         if self.files.has_scene {
+            let description = &self.document.description;
             let submitted = self.work.submit(description, &self.interface, self.viewport.size);
-            if let Err(error) = submitted {
-                self.toasts.fail(format!("cannot render this scene: {error}"));
+            match submitted {
+                Ok(()) => self.files.missing = None,
+                Err(missing) => self.load_missing(missing),
             }
         }
         self.work.session.set_paused(self.interface.is_paused);
         if let Some(frame) = self.work.session.latest() {
-            self.picture.show(&frame, &description.tone_mapping);
+            self.picture.show(&frame, &self.document.description.tone_mapping);
             let noise = self.work.session.status().noise_percent;
             self.work.note_noise(frame.generation, frame.samples, noise);
             self.take_snapshot(ctx, &frame);

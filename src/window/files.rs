@@ -4,6 +4,7 @@ use super::dialogs::{PathDialogs, Purpose};
 use crate::io::folder::{FileRecord, Folder};
 use crate::loader::{Loader, Source};
 use crate::scene::description::SceneDescription;
+use crate::scene::resolve::ResolveError;
 use crate::threads;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -23,6 +24,12 @@ pub(super) struct FileWork {
     pub(super) report: Vec<String>,
     /// Name of what is being loaded.
     pub(super) loading: Option<String>,
+    /// What was opened.
+    pub(super) source: Option<Source>,
+    /// Whether what is being loaded completes an edited scene.
+    pub(super) is_completing: bool,
+    /// What an edited scene lacked when it was last looked at.
+    pub(super) missing: Option<ResolveError>,
     /// Whether a scene has been opened at all.
     pub(super) has_scene: bool,
     /// Whether edits are being saved so that `pending` can go on.
@@ -72,6 +79,9 @@ impl FileWork {
             records: Vec::new(),
             report: Vec::new(),
             loading: None,
+            source: None,
+            is_completing: false,
+            missing: None,
             has_scene: false,
             is_saving_first: false,
             close_confirmed: false,
@@ -83,6 +93,7 @@ impl FileWork {
 
     /// Starts loading; the scene that is open stays until the new one is ready.
     pub(super) fn open(&mut self, source: Source) {
+        self.is_completing = false;
         self.loading = Some(source.stem());
         self.loader.open(source);
     }

@@ -32,8 +32,6 @@ pub(super) struct StatusLine {
 pub(super) enum Work {
     /// Nothing to show yet.
     Idle,
-    /// A scene is being loaded.
-    Loading(String),
     /// The tree over the scene is being built.
     Building,
     /// Samples are being added.
@@ -83,7 +81,7 @@ pub(super) fn status_ui(ui: &mut Ui, line: &StatusLine, pixel: Option<PixelUnder
 fn progress_line(ui: &mut Ui, line: &StatusLine) {
     let bar = ui.max_rect().expand2(Vec2::new(8.0, 0.0));
     let share = match line.work {
-        Work::Idle | Work::Loading(_) | Work::Building | Work::Failed(_) => 0.0,
+        Work::Idle | Work::Building | Work::Failed(_) => 0.0,
         Work::Rendering | Work::Paused => {
             f64::from(line.samples.0) / f64::from(line.samples.1.max(1))
         }
@@ -101,7 +99,6 @@ fn progress_line(ui: &mut Ui, line: &StatusLine) {
 fn work_text(work: &Work, n_done: u32, n_goal: u32) -> String {
     match work {
         Work::Idle => "ready".to_owned(),
-        Work::Loading(what) => format!("loading {what}"),
         Work::Building => "building the tree".to_owned(),
         Work::Rendering => format!("rendering {n_done}/{n_goal}"),
         Work::Paused => format!("paused {n_done}/{n_goal}"),

@@ -106,11 +106,6 @@ impl<'a> Figure<'a> {
         });
     }
 
-    /// Shows the line without a slider and edits `value` in place.
-    pub(super) fn show_box(self, ui: &mut Ui, value: &mut f64) {
-        row(ui, self.label, self.help, |ui| self.figure_box(ui, value));
-    }
-
     /// Shows the line for a whole number and edits it in place.
     pub(super) fn show_integer(mut self, ui: &mut Ui, value: &mut u32) {
         self.integer = true;
