@@ -13,4 +13,6 @@ pub mod io;
 pub mod render;
 pub mod tone_mapping;
 
-pub mod document;
+pub mod loader;
+
+pub mod cli;

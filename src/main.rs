@@ -1,2 +1,26 @@
-//! Penumbra.
-fn main() {}
+//! Arguments in, exit status out.
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use penumbra::cli::{self, Arguments};
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match &arguments.command {
+        Some(command) => cli::run(command),
+        None => open_window(arguments),
+    }
+}
+
+#[cfg(not(feature = "window"))]
+fn open_window(_: Arguments) -> ExitCode {
+    eprintln!("error: this build has no window; use `penumbra render FILE -o OUT`");
+    ExitCode::FAILURE
+}
+
+#[cfg(feature = "window")]
+fn open_window(_: Arguments) -> ExitCode {
+    eprintln!("error: this build has no window; use `penumbra render FILE -o OUT`");
+    ExitCode::FAILURE
+}

@@ -4,6 +4,7 @@ mod excerpt;
 pub mod files;
 pub mod folder;
 pub mod gallery;
+pub mod image_file;
 pub mod mtl;
 pub mod obj;
 pub mod output;

@@ -205,3 +205,29 @@ fn located(
     };
     at(place, message)
 }
+
+/// An error about the file that an entry names: `index` counts in the section, `message` says what
+/// is wrong with the file. The place is the entry's `file` key, or the override that gave it.
+pub fn file_fault(
+    text: &str,
+    overrides: &[Override],
+    section: Section,
+    index: usize,
+    message: &str,
+) -> SceneFileError {
+    let fault = Fault::new(
+        vec![Step::key(section.name()), Step::Index(index), Step::key("file")],
+        message.to_owned(),
+    );
+    let located = || {
+        let source = Source::parse(text).ok()?;
+        let mut root = source.table();
+        name_the_unnamed(&mut root);
+        let mut placed = Vec::new();
+        for given in overrides {
+            placed.push((given, given.apply(&mut root).ok()?));
+        }
+        Some(located(&fault, &root, &source, &placed))
+    };
+    located().unwrap_or_else(|| at(Position { line: 1, column: 1 }, message.to_owned()))
+}

@@ -1,0 +1,171 @@
+//! The command line: `render`, `info` and `verify`, without a window.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::geometry::AcceleratorKind;
+use crate::io::scene_file::Override;
+
+mod info;
+mod progress;
+mod render;
+mod verify;
+
+/// See how a picture is made of light.
+///
+/// Without a command, opens the window on a scene, a mesh or a snapshot; without FILE, on the
+/// final scene of the gallery.
+#[derive(Debug, Parser)]
+#[command(name = "penumbra", version, args_conflicts_with_subcommands = true)]
+pub struct Arguments {
+    /// Scene (.toml), mesh (.obj) or snapshot (.png) to open in the window
+    pub file: Option<PathBuf>,
+    /// What to do without a window
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+/// What can be done without a window.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene, a mesh or a snapshot to a picture
+    Render(RenderArguments),
+    /// Say what a scene or mesh holds
+    Info(InfoArguments),
+    /// Render a snapshot's scene again and compare every byte
+    Verify(VerifyArguments),
+}
+
+/// Options of `render`.
+#[derive(Debug, Args)]
+pub struct RenderArguments {
+    /// Scene (.toml), mesh (.obj) or snapshot (.png)
+    file: PathBuf,
+    /// Picture to write: .png (8-bit sRGB, carries its scene), .exr or .hdr (linear)
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// Samples per pixel
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_048_576))]
+    samples: Option<u32>,
+    /// Stop at the first whole pass after this many seconds
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    time: Option<f64>,
+    /// Stop when the estimated noise falls below this
+    #[arg(long, value_name = "PERCENT", value_parser = positive)]
+    noise: Option<f64>,
+    /// Width in pixels
+    #[arg(long, value_name = "W", value_parser = clap::value_parser!(u32).range(1..=16_384))]
+    width: Option<u32>,
+    /// Height in pixels
+    #[arg(long, value_name = "H", value_parser = clap::value_parser!(u32).range(1..=16_384))]
+    height: Option<u32>,
+    /// Seed of all random numbers
+    #[arg(long, value_name = "N")]
+    seed: Option<u32>,
+    /// Threads to render with; all if not given
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    threads: Option<u32>,
+    /// Set a parameter of the scene, as camera.aperture_radius=0.1; may be repeated
+    #[arg(long = "set", value_name = "PATH=VALUE", value_parser = Override::parse)]
+    sets: Vec<Override>,
+    /// How rays find what they meet: kd-tree, kd-midpoint or brute-force; changes no pixel
+    #[arg(long, value_name = "NAME", value_parser = accelerator, default_value = "kd-tree")]
+    accelerator: AcceleratorKind,
+    /// No progress and no warnings
+    #[arg(long)]
+    quiet: bool,
+    /// Print one JSON object about the result
+    #[arg(long)]
+    json: bool,
+}
+
+/// Options of `info`.
+#[derive(Debug, Args)]
+pub struct InfoArguments {
+    /// Scene (.toml), mesh (.obj) or snapshot (.png)
+    file: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// Options of `verify`.
+#[derive(Debug, Args)]
+pub struct VerifyArguments {
+    /// Snapshot to render again
+    shot: PathBuf,
+    /// Threads to render with; all if not given
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    threads: Option<u32>,
+    /// No progress and no warnings
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// How a command failed.
+#[derive(Debug)]
+pub enum Failure {
+    /// The command line is wrong: exit status 2.
+    Usage(String),
+    /// Anything else: exit status 1.
+    Other(anyhow::Error),
+    /// The result is a "no" that has been told: exit status 1.
+    Different,
+}
+
+impl<E: Into<anyhow::Error>> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self::Other(error.into())
+    }
+}
+
+/// Runs a command to its exit status. Errors go to stderr as one message.
+pub fn run(command: &Command) -> ExitCode {
+    let result = match command {
+        Command::Render(arguments) => render::run(arguments),
+        Command::Info(arguments) => info::run(arguments),
+        Command::Verify(arguments) => verify::run(arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure::Usage(message)) => {
+            eprintln!("error: {message}");
+            ExitCode::from(2)
+        }
+        Err(Failure::Other(error)) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+        Err(Failure::Different) => ExitCode::FAILURE,
+    }
+}
+
+/// The one place that prints results.
+#[expect(clippy::print_stdout, reason = "results of commands belong on stdout")]
+fn print(line: &str) {
+    println!("{line}");
+}
+
+fn warn(lines: &[String], is_quiet: bool) {
+    if !is_quiet {
+        for line in lines {
+            eprintln!("warning: {line}");
+        }
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number > 0.0 && number.is_finite() => Ok(number),
+        _ => Err("give a number above 0".to_owned()),
+    }
+}
+
+fn accelerator(text: &str) -> Result<AcceleratorKind, String> {
+    AcceleratorKind::from_name(text).ok_or_else(|| {
+        let names = AcceleratorKind::ALL.map(AcceleratorKind::name).join(", ");
+        format!("there is no accelerator of that name; give one of {names}")
+    })
+}

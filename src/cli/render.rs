@@ -1,0 +1,163 @@
+//! `penumbra render`: a scene to a picture file.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use anyhow::{Context, bail};
+
+use crate::cli::progress::Progress;
+use crate::cli::{Failure, RenderArguments, print, warn};
+use crate::geometry::AcceleratorKind;
+use crate::io::output::{OutputFormat, encode, replace_file};
+use crate::io::scene_file::Override;
+use crate::io::snapshot;
+use crate::loader::{LoadError, Loaded, Source, load};
+use crate::render::{Film, RenderJob, RenderSettings, World, plan, render_pass};
+use crate::scene::resolve;
+use crate::threads;
+
+pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
+    let output = &arguments.output;
+    let Some(format) = OutputFormat::of(output) else {
+        return Err(Failure::Usage(format!(
+            "--output {}: unknown ending; give a name that ends in .png, .exr or .hdr",
+            output.display()
+        )));
+    };
+    check_folder(output)?;
+    let loaded = open(&arguments.file, &overrides(arguments))?;
+    warn(&loaded.report, arguments.quiet);
+    let goal = loaded.description.render.samples;
+    let start = Instant::now();
+    let n_threads = arguments.threads.map_or_else(threads::available, |n| n as usize);
+    let pool = threads::pool("render", n_threads)?;
+    let mut world = world_of(&loaded, arguments.accelerator, &pool)?;
+    let mut progress = Progress::new(u64::from(goal), arguments.quiet);
+    let limits = Limits { samples: goal, seconds: arguments.time, noise: arguments.noise };
+    let film = develop(&mut world, &pool, limits, start, |film| progress.show(film))?;
+    progress.finish();
+    let seconds = start.elapsed().as_secs_f64();
+    let size = (film.width(), film.height());
+    let texts =
+        snapshot::texts(&loaded.description, size, film.n_samples(), &loaded.files, None)?;
+    let tone_mapping = &loaded.description.tone_mapping;
+    let bytes = encode(output, format, &film.picture(), tone_mapping, &texts)?;
+    replace_file(output, &bytes)?;
+    if arguments.json {
+        let summary = serde_json::json!({
+            "output": output.to_string_lossy(),
+            "width": size.0,
+            "height": size.1,
+            "samples": film.n_samples(),
+            "seconds": seconds,
+            "noise_percent": film.noise_percent(),
+        });
+        print(&summary.to_string());
+    }
+    Ok(())
+}
+
+/// When a render ends: at the first of these.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    pub(super) samples: u32,
+    pub(super) seconds: Option<f64>,
+    pub(super) noise: Option<f64>,
+}
+
+/// Loads a file; a wrong `--set` is the command line's fault.
+pub(super) fn open(file: &Path, overrides: &[Override]) -> Result<Loaded, Failure> {
+    match load(&Source::File(file.to_owned()), overrides, &AtomicBool::new(false)) {
+        Ok(loaded) => Ok(loaded),
+        Err(LoadError::Override(error)) => Err(Failure::Usage(error.to_string())),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// The scene with its trees built.
+pub(super) fn world_of(
+    loaded: &Loaded,
+    accelerator: AcceleratorKind,
+    pool: &rayon::ThreadPool,
+) -> anyhow::Result<World> {
+    let scene = resolve(&loaded.description, &loaded.assets)?;
+    let render = &loaded.description.render;
+    let job = RenderJob {
+        scene: Arc::new(scene),
+        width: render.width,
+        height: render.height,
+        settings: RenderSettings::new(render, accelerator),
+    };
+    Ok(pool.install(|| World::new(job)))
+}
+
+/// Passes until a limit is reached; `after_pass` is shown the film after each.
+pub(super) fn develop(
+    world: &mut World,
+    pool: &rayon::ThreadPool,
+    limits: Limits,
+    start: Instant,
+    mut after_pass: impl FnMut(&Film),
+) -> anyhow::Result<Film> {
+    /// With fewer samples the estimate of the noise is not to be trusted.
+    const LEAST_FOR_NOISE: u32 = 8;
+    let never = AtomicBool::new(false);
+    let mut film = Film::new(world.job.width, world.job.height)?;
+    let mut n_invalid = 0;
+    while film.n_samples() < limits.samples {
+        let before = film.n_samples();
+        let mut n = plan::pass_samples(before, limits.samples);
+        if let Some(seconds) = limits.seconds {
+            // A long pass that would overrun by far is cut to what fits.
+            let elapsed = start.elapsed().as_secs_f64();
+            let affordable = f64::from(before) * (seconds - elapsed) / elapsed.max(1e-9);
+            n = n.min((affordable as u32).max(1));
+        }
+        match pool.install(|| render_pass(world, &mut film, n, &never)) {
+            Ok(statistics) => n_invalid += statistics.n_invalid,
+            Err(_) => bail!("the render was stopped"),
+        }
+        after_pass(&film);
+        let is_late = limits.seconds.is_some_and(|s| start.elapsed().as_secs_f64() >= s);
+        let is_clean = film.n_samples() >= LEAST_FOR_NOISE
+            && limits.noise.zip(film.noise_percent()).is_some_and(|(goal, now)| now <= goal);
+        if is_late || is_clean {
+            break;
+        }
+    }
+    if n_invalid > 0 {
+        eprintln!("warning: {n_invalid} samples were not finite and counted as black");
+    }
+    Ok(film)
+}
+
+/// `--set` first, then the options of their own, which win.
+fn overrides(arguments: &RenderArguments) -> Vec<Override> {
+    let mut overrides = arguments.sets.clone();
+    let options = [
+        ("--samples", "samples", arguments.samples),
+        ("--width", "width", arguments.width),
+        ("--height", "height", arguments.height),
+        ("--seed", "seed", arguments.seed),
+    ];
+    for (option, key, value) in options {
+        if let Some(value) = value {
+            overrides.push(Override::new(option, &["render", key], i64::from(value)));
+        }
+    }
+    overrides
+}
+
+/// Before hours are spent on a picture that has no place to go.
+fn check_folder(output: &Path) -> anyhow::Result<()> {
+    let folder = output.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new("."));
+    let metadata = std::fs::metadata(folder)
+        .with_context(|| format!("{}: the folder of the output", folder.display()))?;
+    if !metadata.is_dir() || output.is_dir() {
+        bail!("{}: is no place for a file", output.display());
+    }
+    Ok(())
+}
