@@ -13,6 +13,10 @@ pub mod io;
 pub mod render;
 pub mod tone_mapping;
 
+pub mod document;
 pub mod loader;
+pub mod session;
 
 pub mod cli;
+#[cfg(feature = "window")]
+pub mod window;

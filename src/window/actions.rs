@@ -134,15 +134,15 @@ impl App {
 
     /// Answers the question that a click in the picture asked of the renderer.
     pub(super) fn take_pick(&mut self, scene: &mut SceneDescription) {
-        let Some(pick) = self.work.session.take_pick() else { return };
+        let Some(picked) = self.work.session.take_picked() else { return };
         let Some(click) = self.awaited_click.take() else { return };
-        match (click, pick.point) {
-            (Click::Focus(..), Some(_)) => {
-                scene.camera.focal_distance = Some(pick.depth);
+        match (click, picked.pick) {
+            (Click::Focus(..), Some(pick)) => {
+                scene.camera.focal_distance = Some(f64::from(pick.depth));
                 self.gesture.next();
             }
-            (Click::TurnAbout(..), Some(point)) => {
-                self.interface.navigation.pivot = Some(point);
+            (Click::TurnAbout(..), Some(pick)) => {
+                self.interface.navigation.pivot = Some(pick.point.map(f64::from));
                 self.toasts.say("the camera turns about this point now");
             }
             (Click::Focus(..) | Click::TurnAbout(..), None) => {

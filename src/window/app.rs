@@ -71,7 +71,7 @@ impl App {
             .unwrap_or_default();
         // One processor is left to the window itself.
         let n_threads = threads::available().saturating_sub(1).max(1);
-        let session = Session::new(n_threads, wake(&cc.egui_ctx));
+        let session = Session::new(n_threads, wake(&cc.egui_ctx))?;
         let mut files = FileWork::new(Loader::new(wake(&cc.egui_ctx))?);
         files.open(first);
         let empty = empty_scene();
@@ -185,7 +185,7 @@ impl App {
         let (swatches, assets) = (&mut self.swatches, &self.work.assets);
         let facts = RenderFacts {
             accelerators: &AcceleratorKind::ALL.map(AcceleratorKind::name),
-            tree: tree_lines(status.tree.as_ref()),
+            tree: tree_lines(status.trees.as_ref()),
             noise: &self.work.noise,
         };
         let summary = format!("{} samples", scene.render.samples);
@@ -265,12 +265,12 @@ impl App {
         let size = frame.map_or(self.viewport.size, |frame| [frame.job.width, frame.job.height]);
         StatusLine {
             work,
-            samples: (status.samples, status.goal),
+            samples: (status.samples, status.goal_samples),
             noise_percent: status.noise_percent,
             seconds: status.seconds,
             seconds_left: status.seconds_left,
             rays_per_second: status.rays_per_second,
-            n_threads: status.threads,
+            n_threads: status.n_threads,
             size,
             zoom_percent: self.viewport.zoom_percent,
         }
@@ -310,8 +310,9 @@ impl App {
         self.work.session.set_paused(self.interface.is_paused);
         if let Some(frame) = self.work.session.latest() {
             self.picture.show(&frame, &self.document.description.tone_mapping);
-            let noise = self.work.session.status().noise_percent;
-            self.work.note_noise(frame.generation, frame.samples, noise);
+            if frame.scale == 1 {
+                self.work.note_noise(frame.generation, frame.samples, frame.noise_percent);
+            }
             self.take_snapshot(ctx, &frame);
         }
         self.picture.update(ctx);

@@ -93,8 +93,8 @@ impl RenderWork {
             settings: RenderSettings::new(render, accelerator),
         };
         let goal = Goal { samples: render.samples, seconds: None, noise_percent: None };
-        self.job = Some(job.clone());
-        self.session.submit(job, goal);
+        self.session.submit(&job, goal);
+        self.job = Some(job);
         Ok(())
     }
 
