@@ -13,7 +13,7 @@ use super::toasts::Toasts;
 use super::toolbar::{ToolbarChoice, ToolbarFacts, toolbar_ui};
 use super::viewport::{Click, physical_size, viewport_ui};
 use super::work::{RenderWork, picture_size};
-use super::{help, keys, theme};
+use super::{help, keys};
 use crate::document::Document;
 use crate::geometry::{AcceleratorKind, TreeStatistics};
 use crate::loader::{Loader, Source};
@@ -55,24 +55,23 @@ struct ViewportFacts {
 }
 
 impl App {
-    /// A window that starts loading `first`.
+    /// A window that starts loading `first`; `ctx` is woken when there is something new.
     ///
     /// # Errors
     /// When the system has no thread left.
-    pub(super) fn new(cc: &eframe::CreationContext<'_>, first: Source) -> std::io::Result<Self> {
-        theme::install(&cc.egui_ctx);
-        let wake = |ctx: &egui::Context| {
+    pub(super) fn new(
+        ctx: &egui::Context,
+        remembered: Remembered,
+        first: Source,
+    ) -> std::io::Result<Self> {
+        let wake = || {
             let ctx = ctx.clone();
             move || ctx.request_repaint()
         };
-        let remembered: Remembered = cc
-            .storage
-            .and_then(|storage| eframe::get_value(storage, Remembered::KEY))
-            .unwrap_or_default();
         // One processor is left to the window itself.
         let n_threads = threads::available().saturating_sub(1).max(1);
-        let session = Session::new(n_threads, wake(&cc.egui_ctx))?;
-        let mut files = FileWork::new(Loader::new(wake(&cc.egui_ctx))?);
+        let session = Session::new(n_threads, wake())?;
+        let mut files = FileWork::new(Loader::new(wake())?);
         files.open(first);
         let empty = empty_scene();
         Ok(Self {
@@ -86,8 +85,8 @@ impl App {
             awaited_click: None,
             snapshot_wanted: false,
             gesture: Gesture::default(),
-            picture: PictureDisplay::new(wake(&cc.egui_ctx))?,
-            swatches: Swatches::new(wake(&cc.egui_ctx))?,
+            picture: PictureDisplay::new(wake())?,
+            swatches: Swatches::new(wake())?,
             viewport: ViewportFacts {
                 size: [1, 1],
                 zoom_percent: 100.0,
@@ -319,13 +318,15 @@ impl App {
     }
 }
 
-impl eframe::App for App {
-    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+impl App {
+    /// Takes what other threads have finished; also while the window is hidden.
+    pub(super) fn take_news(&mut self, ctx: &egui::Context) {
         self.take_results(ctx);
         self.guard_close(ctx);
     }
 
-    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+    /// One frame of the window.
+    pub(super) fn frame_ui(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
         self.gesture.update(&ctx);
         let mut scene = self.document.description.clone();
@@ -343,6 +344,16 @@ impl eframe::App for App {
         self.ask_about_unsaved(&ctx);
         let foot = self.viewport.rect.center_bottom() - egui::Vec2::new(0.0, 16.0);
         self.toasts.show(&ctx, foot);
+    }
+}
+
+impl eframe::App for App {
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.take_news(ctx);
+    }
+
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        self.frame_ui(ui);
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {

@@ -95,15 +95,9 @@ fn picker(ui: &mut Ui, label: &str, highest: f64, value: &mut Triple) {
             (0..3).all(|channel| (rgb[channel] - linear[channel]).abs() < 1e-4)
         })
         .unwrap_or_else(|| Hsva::from_rgb(linear));
-    ui.spacing_mut().slider_width = 212.0;
-    let changed = ui
-        .name_inputs(format!("{label}: picker"), |ui| {
-            egui::color_picker::color_picker_hsva_2d(
-                ui,
-                &mut hsva,
-                egui::color_picker::Alpha::Opaque,
-            )
-        });
+    let mut changed = saturation_value_square(ui, label, &mut hsva);
+    ui.add_space(4.0);
+    changed |= hue_bar(ui, label, &mut hsva);
     if changed {
         *value = hsva.to_rgb().map(|channel| f64::from(channel.clamp(0.0, 1.0)));
     }
@@ -121,6 +115,71 @@ fn picker(ui: &mut Ui, label: &str, highest: f64, value: &mut Triple) {
             }
         }
     });
+}
+
+/// Saturation to the right, value to the top, at one hue.
+fn saturation_value_square(ui: &mut Ui, label: &str, hsva: &mut Hsva) -> bool {
+    const CELLS: u32 = 16;
+    let (rect, response) = ui.allocate_exact_size(Vec2::new(220.0, 132.0), Sense::click_and_drag());
+    let name = format!("{label}: saturation and brightness");
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, &name));
+    let picked = response.interact_pointer_pos();
+    if let Some(at) = picked {
+        let share = (at - rect.min) / rect.size();
+        hsva.s = share.x.clamp(0.0, 1.0);
+        // Squared, so that equal steps look about equal in linear light.
+        hsva.v = (1.0 - share.y).clamp(0.0, 1.0).powi(2);
+    }
+    let mut mesh = egui::Mesh::default();
+    for index in 0..(CELLS + 1) * (CELLS + 1) {
+        let (column, row) = (index % (CELLS + 1), index / (CELLS + 1));
+        let share = Vec2::new(column as f32, row as f32) / CELLS as f32;
+        let color = Hsva::new(hsva.h, share.x, (1.0 - share.y).powi(2), 1.0);
+        mesh.colored_vertex(rect.lerp_inside(share), color.into());
+        if column < CELLS && row < CELLS {
+            let (below, right) = (index + CELLS + 1, index + 1);
+            mesh.add_triangle(index, right, below);
+            mesh.add_triangle(right, below + 1, below);
+        }
+    }
+    ui.painter().add(mesh);
+    let at = rect.lerp_inside(Vec2::new(hsva.s, 1.0 - hsva.v.max(0.0).sqrt()));
+    marker(ui, at, hsva.v < 0.3);
+    picked.is_some()
+}
+
+/// All hues from left to right.
+fn hue_bar(ui: &mut Ui, label: &str, hsva: &mut Hsva) -> bool {
+    const CELLS: u32 = 36;
+    let (rect, response) = ui.allocate_exact_size(Vec2::new(220.0, 18.0), Sense::click_and_drag());
+    let name = format!("{label}: hue");
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, &name));
+    let picked = response.interact_pointer_pos();
+    if let Some(at) = picked {
+        hsva.h = ((at.x - rect.left()) / rect.width()).clamp(0.0, 0.9999);
+    }
+    let mut mesh = egui::Mesh::default();
+    for column in 0..=CELLS {
+        let share = column as f32 / CELLS as f32;
+        let color = Color32::from(Hsva::new(share, 1.0, 1.0, 1.0));
+        for side in [0.0, 1.0] {
+            mesh.colored_vertex(rect.lerp_inside(Vec2::new(share, side)), color);
+        }
+        if column < CELLS {
+            let first = column * 2;
+            mesh.add_triangle(first, first + 2, first + 1);
+            mesh.add_triangle(first + 2, first + 3, first + 1);
+        }
+    }
+    ui.painter().add(mesh);
+    marker(ui, rect.lerp_inside(Vec2::new(hsva.h, 0.5)), false);
+    picked.is_some()
+}
+
+fn marker(ui: &Ui, at: egui::Pos2, on_dark: bool) {
+    let color = if on_dark { Color32::WHITE } else { Color32::BLACK };
+    ui.painter().circle_stroke(at, 5.0, Stroke::new(3.0, Color32::from_white_alpha(90)));
+    ui.painter().circle_stroke(at, 5.0, Stroke::new(1.5, color));
 }
 
 #[cfg(test)]

@@ -200,7 +200,8 @@ mod tests {
             modifiers,
         });
         let mut actions = Vec::new();
-        let _ = ctx.run_ui(input, |ui| actions.extend(pressed(ui.ctx(), false)));
+        let mut output = ctx.run_ui(input, |ui| actions.extend(pressed(ui.ctx(), false)));
+        output.textures_delta.clear();
         actions
     }
 

@@ -67,8 +67,17 @@ pub fn run(file: Option<PathBuf>) -> Result<(), WindowError> {
         dithering: false,
         ..eframe::NativeOptions::default()
     };
-    let create: eframe::AppCreator<'_> =
-        Box::new(move |cc| Ok(Box::new(app::App::new(cc, first)?)));
+    let create: eframe::AppCreator<'_> = Box::new(move |cc| {
+        theme::install(&cc.egui_ctx);
+        let remembered = cc
+            .storage
+            .and_then(|storage| eframe::get_value(storage, state::Remembered::KEY))
+            .unwrap_or_default();
+        Ok(Box::new(app::App::new(&cc.egui_ctx, remembered, first)?))
+    });
     eframe::run_native("penumbra", options, create)
         .map_err(|error| WindowError::NoWindow { reason: error.to_string() })
 }
+
+#[cfg(test)]
+mod tests;

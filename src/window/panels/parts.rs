@@ -11,6 +11,8 @@ pub(in crate::window) struct Renaming {
     part: Part,
     index: usize,
     text: String,
+    /// The field has not been shown yet, and takes the focus when it is.
+    is_new: bool,
 }
 
 /// Where new parts go.
@@ -78,7 +80,7 @@ pub(super) fn part_list(
             }
             if ui.button("Rename").on_hover_text(format!("renames this {one}")).clicked() {
                 let text = structure::names(scene, part)[*selected].to_owned();
-                *renaming = Some(Renaming { part, index: *selected, text });
+                *renaming = Some(Renaming { part, index: *selected, text, is_new: true });
             }
             let delete = ui.button("Delete").on_hover_text(format!("removes this {one}"));
             if delete.clicked() {
@@ -97,19 +99,12 @@ fn name_field(
     label: &str,
     renaming: &mut Option<Renaming>,
 ) {
-    let Some(Renaming { part, index, mut text }) = renaming.take() else { return };
+    let Some(Renaming { part, index, mut text, is_new }) = renaming.take() else { return };
     let mut refused = None;
     let done = row(ui, label, "", |ui| {
         let field = egui::TextEdit::singleline(&mut text).desired_width(ui.available_width());
         let response = ui.add(field).accessible_name(format!("{label} name"));
-        let first_time = ui.data_mut(|data| {
-            let shown = data.get_temp_mut_or_default::<Option<(usize, u64)>>(response.id);
-            let frame = ui.cumulative_frame_nr();
-            let again = matches!(shown, Some((of, last)) if *of == index && frame - *last <= 1);
-            *shown = Some((index, frame));
-            !again
-        });
-        if first_time {
+        if is_new {
             response.request_focus();
         }
         response.lost_focus()
@@ -134,6 +129,6 @@ fn name_field(
         row(ui, "", "", |ui| ui.colored_label(ui.visuals().warn_fg_color, reason));
     }
     if !done {
-        *renaming = Some(Renaming { part, index, text });
+        *renaming = Some(Renaming { part, index, text, is_new: false });
     }
 }
