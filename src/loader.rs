@@ -14,7 +14,7 @@ use crate::io::folder::{FileRecord, Folder, LARGEST_ASSET};
 use crate::io::obj::{self, ObjError};
 use crate::io::scene_file::{self, Override, OverrideError, SceneFileError, Section};
 use crate::io::snapshot::{self, RenderRecord, SnapshotError};
-use crate::io::{excerpt, gallery, image_file, mtl};
+use crate::io::{excerpt, gallery, image_file, mtl, printable_path};
 use crate::scene::assets::{Assets, MeshAsset, MeshKey, SlotMaterial};
 use crate::scene::description::{ObjectKind, SceneDescription, TextureKind};
 use crate::scene::image::Image;
@@ -37,9 +37,9 @@ impl Source {
     /// The name to show and to derive other names from, without folder and ending.
     pub fn stem(&self) -> String {
         match self {
-            Self::File(path) => {
-                path.file_stem().map_or_else(|| "scene".into(), |s| s.to_string_lossy().into_owned())
-            }
+            Self::File(path) => path
+                .file_stem()
+                .map_or_else(|| "scene".into(), |s| s.to_string_lossy().into_owned()),
             Self::Gallery(name) => (*name).to_owned(),
         }
     }
@@ -129,13 +129,9 @@ pub fn load(
     reading.records.extend(opened.mesh_files.iter().cloned());
     reading.all_of(&description).map_err(|failure| match failure {
         AssetFailure::Cancelled => LoadError::Cancelled,
-        AssetFailure::Broken { section, index, message } => scene_error(scene_file::file_fault(
-            &opened.text,
-            overrides,
-            section,
-            index,
-            &message,
-        )),
+        AssetFailure::Broken { section, index, message } => {
+            scene_error(scene_file::file_fault(&opened.text, overrides, section, index, &message))
+        }
     })?;
     Ok(Loaded {
         source: source.clone(),
@@ -196,7 +192,7 @@ impl Opened {
             }
             Source::File(path) => path,
         };
-        let name = excerpt_name(path);
+        let name = printable_path(path);
         let bytes = read_file(path, LARGEST_ASSET)?;
         if bytes.starts_with(b"\x89PNG") {
             let snapshot = snapshot::read(&bytes, path)
@@ -247,10 +243,6 @@ impl Opened {
     }
 }
 
-fn excerpt_name(path: &Path) -> String {
-    path.to_string_lossy().chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
-}
-
 /// The files of one scene on their way in; each is read once.
 struct Reading<'a> {
     folder: &'a Folder,
@@ -285,12 +277,12 @@ impl<'a> Reading<'a> {
             if self.assets.meshes.contains_key(&key) {
                 continue;
             }
-            let broken = |message| AssetFailure::Broken { section: Section::Objects, index, message };
+            let broken =
+                |message| AssetFailure::Broken { section: Section::Objects, index, message };
             let bytes = self.read(&key.file).map_err(|error| broken(error.to_string()))?;
             let label = excerpt(key.file.as_bytes());
-            let asset = self
-                .mesh_of(&key, &bytes)
-                .map_err(|error| broken(format!("{label}: {error}")))?;
+            let asset =
+                self.mesh_of(&key, &bytes).map_err(|error| broken(format!("{label}: {error}")))?;
             self.assets.meshes.insert(key, Arc::new(asset));
         }
         for (index, texture) in description.textures.iter().enumerate() {
@@ -326,8 +318,7 @@ impl<'a> Reading<'a> {
 
     fn image(&mut self, file: &str) -> Result<Image, String> {
         let bytes = self.read(file).map_err(|error| error.to_string())?;
-        image_file::decode(&bytes)
-            .map_err(|error| format!("{}: {error}", excerpt(file.as_bytes())))
+        image_file::decode(&bytes).map_err(|error| format!("{}: {error}", excerpt(file.as_bytes())))
     }
 
     /// The mesh with its libraries' materials; whatever is wrong with those is reported only.
@@ -343,10 +334,12 @@ impl<'a> Reading<'a> {
         let told = notes.warnings.into_iter().chain(warnings);
         self.report.extend(told.map(|warning| format!("{label}: {warning}")));
         let mut maps: HashMap<String, Option<Arc<Image>>> = HashMap::new();
-        let mut n_materials = 0;
         let mut slots = Vec::with_capacity(materials.len());
         for material in materials {
-            n_materials += usize::from(material != mtl::MtlMaterial::neutral(&*material.name));
+            let Some(material) = material else {
+                slots.push(None);
+                continue;
+            };
             let diffuse_map = material.diffuse_map.and_then(|map| {
                 let file = named(Path::new(&map));
                 if !maps.contains_key(&file) {
@@ -358,11 +351,12 @@ impl<'a> Reading<'a> {
                 }
                 maps.get(&file).cloned().flatten()
             });
-            slots.push(SlotMaterial { description: material.description, diffuse_map });
+            slots.push(Some(SlotMaterial { description: material.description, diffuse_map }));
         }
-        if mesh.uvs.is_empty() && slots.iter().any(|slot| slot.diffuse_map.is_some()) {
+        let has_map = slots.iter().flatten().any(|slot| slot.diffuse_map.is_some());
+        if mesh.uvs.is_empty() && has_map {
             self.report.push(format!("{label}: has no texture coordinates; (0, 0) is used"));
         }
-        Ok(MeshAsset { traced: Arc::new(TracedMesh::new(mesh)), slots, n_materials })
+        Ok(MeshAsset { traced: Arc::new(TracedMesh::new(mesh)), slots })
     }
 }

@@ -19,11 +19,30 @@ pub fn spawn<T: Send + 'static>(
 /// # Errors
 /// When the system has no thread left.
 pub fn pool(name: &'static str, n_threads: usize) -> io::Result<rayon::ThreadPool> {
+    builder(name, n_threads).build().map_err(io::Error::other)
+}
+
+/// The same, at lower priority where the system has one, so that the desktop stays usable.
+///
+/// # Errors
+/// When the system has no thread left.
+pub fn background_pool(name: &'static str, n_threads: usize) -> io::Result<rayon::ThreadPool> {
+    builder(name, n_threads).start_handler(|_| lower_priority()).build().map_err(io::Error::other)
+}
+
+fn builder(name: &'static str, n_threads: usize) -> rayon::ThreadPoolBuilder {
     rayon::ThreadPoolBuilder::new()
         .num_threads(n_threads.max(1))
         .thread_name(move |index| format!("{name}-{index}"))
-        .build()
-        .map_err(io::Error::other)
+}
+
+fn lower_priority() {
+    // On Linux niceness belongs to the thread.
+    #[cfg(target_os = "linux")]
+    {
+        // Rendering at normal priority is no failure.
+        let _ = rustix::process::nice(5);
+    }
 }
 
 /// Processors that this process may use, at least 1.

@@ -20,8 +20,7 @@ pub(super) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
     let build_ms = tree.build_secs * 1e3;
     let bounds = world.geometry.bounds();
     if arguments.json {
-        let bounds =
-            bounds.map(|b| json!({ "min": b.min.to_array(), "max": b.max.to_array() }));
+        let bounds = bounds.map(|b| json!({ "min": b.min.to_array(), "max": b.max.to_array() }));
         let info = json!({
             "vertices": counts.vertices,
             "triangles": counts.triangles,
@@ -84,7 +83,7 @@ impl Counts {
                 counts.vertices += asset.traced.mesh.positions.len();
                 counts.triangles += asset.traced.mesh.triangles.len();
                 if object.material.is_none() {
-                    counts.materials += asset.n_materials;
+                    counts.materials += asset.slots.iter().flatten().count();
                 }
             }
         }

@@ -20,8 +20,7 @@ impl Progress {
             // Writing to a string cannot fail.
             let _ = write!(out, "{:.1}", state.per_sec());
         };
-        let template =
-            "{bar:32} {pos}/{len} samples  {rate} samples/s  {eta} left  {msg}";
+        let template = "{bar:32} {pos}/{len} samples  {rate} samples/s  {eta} left  {msg}";
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style.with_key("rate", rate));
         }

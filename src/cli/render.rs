@@ -40,8 +40,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     progress.finish();
     let seconds = start.elapsed().as_secs_f64();
     let size = (film.width(), film.height());
-    let texts =
-        snapshot::texts(&loaded.description, size, film.n_samples(), &loaded.files, None)?;
+    let texts = snapshot::texts(&loaded.description, size, film.n_samples(), &loaded.files, None)?;
     let tone_mapping = &loaded.description.tone_mapping;
     let bytes = encode(output, format, &film.picture(), tone_mapping, &texts)?;
     replace_file(output, &bytes)?;

@@ -18,7 +18,9 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     let path = &arguments.shot;
     let loaded = open(path, &[])?;
     let Some(record) = &loaded.snapshot else {
-        return Err(anyhow!("{}: is no snapshot; give a PNG saved by penumbra", path.display()).into());
+        return Err(
+            anyhow!("{}: is no snapshot; give a PNG saved by penumbra", path.display()).into()
+        );
     };
     warn(&loaded.report, arguments.quiet);
     let (width, height, saved) = read_pixels(&read_file(path, LARGEST_ASSET)?)?;
@@ -38,7 +40,9 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     };
     if (width, height) != (film.width(), film.height()) {
         let (w, h) = (film.width(), film.height());
-        print(&format!("different: the picture is {width} x {height}, its scene {w} x {h}{versions}"));
+        print(&format!(
+            "different: the picture is {width} x {height}, its scene {w} x {h}{versions}"
+        ));
         return Err(Failure::Different);
     }
     let n_different = saved.iter().zip(&rendered).filter(|(a, b)| a != b).count();

@@ -8,9 +8,9 @@
 mod instance;
 pub mod kd_tree;
 pub mod mesh;
-pub mod normals;
 mod mesh_tree;
 mod nearest;
+pub mod normals;
 mod shape;
 mod surface;
 mod triangle;

@@ -1,6 +1,8 @@
 //! Pieces of foreign text in messages: escaped, so that no file can send a control sequence to a
 //! terminal, and shortened.
 
+use std::path::Path;
+
 /// Characters of a file's text that a message repeats at most.
 const MAX_CHARS: usize = 48;
 
@@ -28,6 +30,15 @@ pub fn excerpt(bytes: &[u8]) -> String {
         }
     }
     if head.len() < bytes.len() { text + "…" } else { text }
+}
+
+/// A path, safe to print on one line and whole: what cannot be printed is escaped.
+pub fn printable_path(path: &Path) -> String {
+    let mut text = String::new();
+    for c in path.to_string_lossy().chars() {
+        push_escaped(&mut text, c);
+    }
+    text
 }
 
 fn push_escaped(text: &mut String, c: char) {
@@ -65,5 +76,8 @@ mod tests {
     #[test]
     fn paths_keep_their_backslashes() {
         assert_eq!(excerpt(b"C:\\models\\a.obj"), "C:\\models\\a.obj");
+        let path = "C:\\a b\u{1b}[0m\\".repeat(20);
+        let expected = "C:\\a b\\u{1b}[0m\\".repeat(20);
+        assert_eq!(printable_path(Path::new(&path)), expected);
     }
 }

@@ -4,11 +4,11 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use crate::io::excerpt;
+use crate::io::printable_path;
 
 /// Why a file could not be read. The path is escaped where it is shown.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: {reason}", excerpt_path(.path))]
+#[error("{}: {reason}", printable_path(.path))]
 pub struct FileError {
     path: PathBuf,
     reason: String,
@@ -70,17 +70,6 @@ pub fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
         return Err(too_long());
     }
     Ok(bytes)
-}
-
-fn excerpt_path(path: &Path) -> String {
-    let text = path.to_string_lossy();
-    // The end tells files apart.
-    let n = text.chars().count();
-    if n <= 48 {
-        return excerpt(text.as_bytes());
-    }
-    let tail: String = text.chars().skip(n - 47).collect();
-    format!("…{}", excerpt(tail.as_bytes()))
 }
 
 #[cfg(test)]

@@ -25,25 +25,15 @@ pub struct MtlMaterial {
     pub diffuse_map: Option<String>,
 }
 
-impl MtlMaterial {
-    /// What surfaces are made of where no material is known: diffuse 0.5.
-    pub fn neutral(name: impl Into<String>) -> Self {
-        let name = name.into();
-        let mut description = MaterialDescription::new(name.clone());
-        description.diffuse = ColorOrTexture::Color([0.5; 3]);
-        Self { name, description, diffuse_map: None }
-    }
-}
-
-/// A material for every slot of a mesh, and what was odd. `libraries` are named as in the OBJ
-/// file; `read` gives the bytes of a file named relative to it, or says why it cannot. A slot
-/// whose material is not found is neutral grey. The file of a `diffuse_map` is relative to the OBJ
-/// file here.
+/// The material of every slot of a mesh, and what was odd. `libraries` are named as in the OBJ
+/// file; `read` gives the bytes of a file named relative to it, or says why it cannot. A slot that
+/// names no material, or none that is found, has none. The file of a `diffuse_map` is relative to
+/// the OBJ file here.
 pub fn materials_of_slots(
     slot_names: &[Option<String>],
     libraries: &[String],
     mut read: impl FnMut(&Path) -> Result<Vec<u8>, String>,
-) -> (Vec<MtlMaterial>, Vec<String>) {
+) -> (Vec<Option<MtlMaterial>>, Vec<String>) {
     let mut warnings = Vec::new();
     let mut known = Vec::new();
     for library in libraries {
@@ -62,11 +52,12 @@ pub fn materials_of_slots(
     let materials = slot_names
         .iter()
         .map(|name| {
-            let Some(name) = name else { return MtlMaterial::neutral("default") };
-            known.iter().find(|material| material.name == *name).cloned().unwrap_or_else(|| {
+            let name = name.as_ref()?;
+            let found = known.iter().find(|material| material.name == *name);
+            if found.is_none() {
                 unknown.push(name.as_str());
-                MtlMaterial::neutral(name)
-            })
+            }
+            found.cloned()
         })
         .collect();
     if !unknown.is_empty() {
@@ -254,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn slots_get_their_materials_and_grey_where_there_is_none() {
+    fn slots_get_the_materials_that_they_name() {
         let names = ["b", "no\u{1b}", "a"].map(|name| Some(name.to_owned()));
         let slots = [&[None], &names[..]].concat();
         let libraries = ["sub\\x.mtl".to_owned(), "gone.mtl".to_owned()];
@@ -265,10 +256,14 @@ mod tests {
                 Err("not there".into())
             }
         });
-        let diffuse: Vec<_> = materials.iter().map(|m| m.description.diffuse.clone()).collect();
-        let expected = [[0.5; 3], [0.0, 1.0, 0.0], [0.5; 3], [1.0, 0.0, 0.0]];
-        assert_eq!(diffuse, expected.map(ColorOrTexture::Color));
-        assert_eq!(materials[1].diffuse_map.as_deref(), Some("sub/tex/b.png"));
+        let diffuse = |slot: &Option<MtlMaterial>| {
+            slot.as_ref().map(|material| material.description.diffuse.clone())
+        };
+        let expected = [None, Some([0.0, 1.0, 0.0]), None, Some([1.0, 0.0, 0.0])];
+        let expected = expected.map(|color| color.map(ColorOrTexture::Color));
+        assert_eq!(materials.iter().map(diffuse).collect::<Vec<_>>(), expected);
+        let map = materials[1].as_ref().unwrap().diffuse_map.as_deref();
+        assert_eq!(map, Some("sub/tex/b.png"));
         assert_eq!(
             warnings,
             [

@@ -92,13 +92,19 @@ pub fn srgb_bytes(picture: &Picture, tone_mapping: &ToneMappingDescription) -> V
 ///
 /// # Errors
 /// When encoding fails.
-pub fn encode_linear(picture: &Picture, format: OutputFormat) -> Result<Vec<u8>, image::ImageError> {
+pub fn encode_linear(
+    picture: &Picture,
+    format: OutputFormat,
+) -> Result<Vec<u8>, image::ImageError> {
     let (width, height) = (picture.width, picture.height);
     let mut bytes = io::Cursor::new(Vec::new());
     if format == OutputFormat::Hdr {
         let pixels: Vec<image::Rgb<f32>> = picture.pixels.iter().map(|p| image::Rgb(*p)).collect();
-        image::codecs::hdr::HdrEncoder::new(&mut bytes)
-            .encode(&pixels, width as usize, height as usize)?;
+        image::codecs::hdr::HdrEncoder::new(&mut bytes).encode(
+            &pixels,
+            width as usize,
+            height as usize,
+        )?;
     } else {
         let floats = picture.pixels.as_flattened();
         let raw: Vec<u8> = floats.iter().flat_map(|x| x.to_ne_bytes()).collect();

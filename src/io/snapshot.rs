@@ -101,10 +101,7 @@ pub fn texts(
         files: files.to_vec(),
         folder,
     };
-    Ok(vec![
-        (SCENE, scene_file::write(&description)),
-        (RENDER, serde_json::to_string(&record)?),
-    ])
+    Ok(vec![(SCENE, scene_file::write(&description)), (RENDER, serde_json::to_string(&record)?)])
 }
 
 /// Reads the scene out of a PNG's bytes; `path` is where it lies.
@@ -122,8 +119,8 @@ pub fn read(bytes: &[u8], path: &Path) -> Result<Snapshot, SnapshotError> {
     };
     let scene = text(SCENE).ok_or(SnapshotError::NoScene)?;
     let record = text(RENDER).ok_or(SnapshotError::NoScene)?;
-    let record: RenderRecord = serde_json::from_str(&record)
-        .map_err(|error| SnapshotError::Record(error.to_string()))?;
+    let record: RenderRecord =
+        serde_json::from_str(&record).map_err(|error| SnapshotError::Record(error.to_string()))?;
     let beside = match Folder::of(path) {
         Folder::Disk(folder) => folder,
         Folder::Gallery | Folder::Snapshot { .. } => PathBuf::from("."),

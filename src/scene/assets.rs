@@ -50,10 +50,8 @@ impl MeshKey {
 pub struct MeshAsset {
     /// The triangles.
     pub traced: Arc<TracedMesh>,
-    /// Material of each slot.
-    pub slots: Vec<SlotMaterial>,
-    /// How many of them the file's libraries know.
-    pub n_materials: usize,
+    /// Material of each slot; `None` is the neutral grey.
+    pub slots: Vec<Option<SlotMaterial>>,
 }
 
 /// A material that came with a mesh.

@@ -204,7 +204,7 @@ pub struct TextureDescription {
     /// How strongly turbulence bends the pattern; any finite number.
     #[serde(default)]
     pub distortion: f64,
-    /// Colours of the ramp, each at least 0. Absent: black to white for noise.
+    /// Colours of the ramp, each at least 0. Absent: black and white for noise and checkers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub colors: Option<Vec<Triple>>,
     /// Image file, relative to the scene file.
@@ -330,7 +330,7 @@ pub struct BumpDescription {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LightDescription {
-    /// Unique among lights. Empty only while a file is read; then "light-1" and so on.
+    /// Unique among lights. A file that gives none means "light-1", "light-2" and so on.
     #[serde(default)]
     pub name: String,
     /// What shape it has.
@@ -378,7 +378,7 @@ pub enum LightKind {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectDescription {
-    /// Unique among objects. Empty only while a file is read; then "object-1" and so on.
+    /// Unique among objects. A file that gives none means "object-1", "object-2" and so on.
     #[serde(default)]
     pub name: String,
     /// What shape it is.

@@ -194,11 +194,16 @@ impl<'a> Resolver<'a> {
             return Ok(ids.clone());
         }
         let mut ids = Vec::with_capacity(asset.slots.len().max(1));
-        for SlotMaterial { description, diffuse_map } in &asset.slots {
-            let map = diffuse_map.as_ref().map(|image| {
-                self.add_texture(Texture::Image { scale: 1.0, image: Arc::clone(image) })
+        for slot in &asset.slots {
+            ids.push(match slot {
+                Some(SlotMaterial { description, diffuse_map }) => {
+                    let map = diffuse_map.as_ref().map(|image| {
+                        self.add_texture(Texture::Image { scale: 1.0, image: Arc::clone(image) })
+                    });
+                    self.add_material(description, map)?
+                }
+                None => self.grey()?,
             });
-            ids.push(self.add_material(description, map)?);
         }
         if ids.is_empty() {
             ids.push(self.grey()?);

@@ -6,6 +6,12 @@
 
 use super::range::Range;
 
+use Presence::{Optional, Required, Written};
+use Rule::{
+    Blades, ColorOrTexture, Colors, Direction, File, Flag, Number, OneOrThree, OneOrTwo, Table,
+    Text, Triple, Whole, Word,
+};
+
 /// A part of a scene file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Section {
@@ -180,12 +186,6 @@ fn one_of(words: &[&str]) -> String {
         None => String::new(),
     }
 }
-
-use Presence::{Optional, Required, Written};
-use Rule::{
-    Blades, ColorOrTexture, Colors, Direction, File, Flag, Number, OneOrThree, OneOrTwo, Table,
-    Text, Triple, Whole, Word,
-};
 
 const fn key(name: &'static str, noun: &'static str, presence: Presence, rule: Rule) -> Key {
     Key { name, noun, presence, rule }

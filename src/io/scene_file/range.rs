@@ -53,10 +53,10 @@ impl Range {
         Self { words: "from 0 to 1", meant: |x| (0.0..=1.0).contains(&x), ..Self::ANY };
     /// Radiance, power, colour.
     pub const LIGHT: Self = Self { largest: LARGEST_LIGHT, ..Self::AT_LEAST_0 };
-    /// A full angle of view in degrees.
+    /// A full angle of view in degrees, in `f32` too: just below 180 it would be 180 there.
     pub const FIELD_OF_VIEW: Self = Self {
         words: "above 0 and below 180",
-        meant: |x| 0.0 < x && x < 180.0,
+        meant: |x| 0.0 < x && (x as f32) < 180.0,
         smallest: 1e-6,
         ..Self::ANY
     };
@@ -104,7 +104,7 @@ mod tests {
             (Range::AT_LEAST_0, vec![0.0, -0.0, 1e-300], vec![-1e-300, 1.1e12]),
             (Range::NOT_0, vec![-1.0, 1.0], vec![0.0, -0.0, 1e-13]),
             (Range::UNIT, vec![0.0, 1.0], vec![-1e-9, 1.000_000_1]),
-            (Range::FIELD_OF_VIEW, vec![0.001, 179.999], vec![0.0, 180.0]),
+            (Range::FIELD_OF_VIEW, vec![0.001, 179.999], vec![0.0, 180.0, 179.999_999_99]),
             (Range::CREASE, vec![0.0, 180.0], vec![-0.1, 180.1]),
             (Range::LIGHT, vec![0.0, 1e30], vec![-1.0, 1.1e30]),
             (Range::ANY, vec![-1e12, 1e12], vec![-1.1e12]),

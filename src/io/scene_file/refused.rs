@@ -1,7 +1,9 @@
 //! Everything that a scene file may not hold, with the place and the message of each error.
 
+use proptest::prelude::*;
+
 use super::parse;
-use super::tests::read;
+use super::tests::{FULL, read};
 
 /// Snippet below a camera, line, column, part of the message.
 const REFUSED: &[(&str, usize, usize, &str)] = &[
@@ -379,5 +381,40 @@ fn mistakes_of_the_camera_are_named_with_their_place() {
         let error = parse(text, &[]).map(|_| ()).expect_err(text).to_string();
         assert!(error.starts_with(&format!("{line}:{column}: ")), "{text}\n{error}");
         assert!(error.contains(fragment), "{text}\n{error}\nshould say {fragment}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        rng_seed: prop::test_runner::RngSeed::Fixed(2),
+        failure_persistence: None,
+        ..ProptestConfig::with_cases(2000)
+    })]
+
+    /// Whatever is done to a file, it is read or refused with one clean line.
+    #[test]
+    fn damaged_files_never_panic(
+        at in any::<prop::sample::Index>(),
+        n_removed in 0..40_usize,
+        inserted in prop_oneof![
+            proptest::collection::vec(any::<char>(), 0..5).prop_map(String::from_iter),
+            prop::sample::select(vec![
+                "=", ".", "\"", "'''", "[", "]]", "{", "\n", "nan", "-1e999", "[camera]",
+                "[[lights]]\n", "name = 1\n", "\u{feff}", "\r", "1979-05-27", "0x", "#",
+            ]).prop_map(String::from),
+        ],
+    ) {
+        let letters: Vec<char> = FULL.chars().collect();
+        let start = at.index(letters.len());
+        let end = (start + n_removed).min(letters.len());
+        let mut text = String::from_iter(&letters[..start]);
+        text.push_str(&inserted);
+        text.extend(&letters[end..]);
+        if let Err(error) = parse(&text, &[]) {
+            let message = error.to_string();
+            prop_assert!(!message.contains(|c: char| c.is_control()), "{:?}", message);
+            let line: usize = message.split(':').next().unwrap().parse().unwrap();
+            prop_assert!(line <= text.lines().count() + 1, "{}", message);
+        }
     }
 }

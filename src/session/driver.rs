@@ -1,0 +1,323 @@
+//! The thread that turns the newest job into pictures.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use crate::render::{Film, PassStatistics, RenderJob, plan};
+use crate::session::{Frame, Goal, Phase, Renderer, Shared, lock};
+
+/// A preview is made as fine as fits this.
+const PREVIEW_SECS: f64 = 0.02;
+/// A full-size pass that takes longer than this is preceded by finer previews.
+const PATIENCE_SECS: f64 = 0.15;
+/// A pass is kept shorter than this where one sample allows.
+const PASS_SECS: f64 = 0.25;
+/// Pictures are published at most this often, but for the first and the last of a job.
+const PUBLISH_INTERVAL: Duration = Duration::from_millis(33);
+/// Samples a second before anything has been measured.
+const FIRST_GUESS_RATE: f64 = 4e5;
+/// With fewer samples the estimate of the noise is not to be trusted.
+const LEAST_FOR_NOISE: u32 = 8;
+
+/// A job at work.
+struct Work<W> {
+    generation: u64,
+    job: RenderJob,
+    world: Arc<W>,
+    film: Film,
+    n_invalid: u64,
+    /// Seconds spent in passes.
+    seconds: f64,
+    is_published: bool,
+    last_publish: Instant,
+}
+
+/// What the driver keeps from one job to the next.
+struct Driver<'a, R: Renderer> {
+    shared: &'a Shared,
+    renderer: &'a R,
+    world: &'a Mutex<Option<Arc<R::World>>>,
+    /// Samples a second, as last measured.
+    rate: f64,
+    rays_per_second: f64,
+    sequence: u64,
+}
+
+enum Next {
+    Close,
+    Begin(u64, RenderJob),
+    GoOn,
+}
+
+pub(super) fn run<R: Renderer>(
+    shared: &Shared,
+    renderer: &R,
+    world: &Mutex<Option<Arc<R::World>>>,
+) {
+    let mut driver = Driver {
+        shared,
+        renderer,
+        world,
+        rate: FIRST_GUESS_RATE,
+        rays_per_second: 0.0,
+        sequence: 0,
+    };
+    let mut work: Option<Work<R::World>> = None;
+    loop {
+        match driver.wait(work.as_ref()) {
+            Next::Close => return,
+            Next::Begin(generation, job) => {
+                // The old world's memory goes before the new one's is taken.
+                drop(work.take());
+                let begun = catch_unwind(AssertUnwindSafe(|| driver.begin(generation, job)));
+                work = driver.contained(begun).flatten();
+            }
+            Next::GoOn => {
+                let Some(current) = &mut work else { continue };
+                let passed = catch_unwind(AssertUnwindSafe(|| driver.refine(current)));
+                if driver.contained(passed).is_none() {
+                    work = None;
+                }
+            }
+        }
+    }
+}
+
+impl<R: Renderer> Driver<'_, R> {
+    /// Sleeps until there is something to do.
+    fn wait(&self, work: Option<&Work<R::World>>) -> Next {
+        let mut orders = self.shared.orders();
+        loop {
+            if orders.is_closing {
+                return Next::Close;
+            }
+            if let Some(job) = orders.mailbox.take() {
+                self.shared.stop_refining.store(false, Ordering::Relaxed);
+                return Next::Begin(orders.generation, job);
+            }
+            let phase = match work {
+                None => None,
+                Some(work) if is_reached(&orders.goal, work) => Some(Phase::Done),
+                Some(work) if orders.is_paused && work.film.n_samples() > 0 => Some(Phase::Paused),
+                Some(_) => {
+                    self.shared.stop_refining.store(false, Ordering::Relaxed);
+                    return Next::GoOn;
+                }
+            };
+            let goal = orders.goal;
+            drop(orders);
+            if let (Some(phase), Some(work)) = (phase, work) {
+                self.rest(phase, goal, work);
+            }
+            orders = self.shared.orders();
+            let is_still_idle = orders.mailbox.is_none()
+                && !orders.is_closing
+                && orders.goal == goal
+                && work.is_none_or(|work| {
+                    is_reached(&orders.goal, work)
+                        || (orders.is_paused && work.film.n_samples() > 0)
+                });
+            if is_still_idle {
+                orders = self.shared.changed.wait(orders).unwrap_or_else(PoisonError::into_inner);
+            }
+        }
+    }
+
+    /// Tells that nothing is being done, once.
+    fn rest(&self, phase: Phase, goal: Goal, work: &Work<R::World>) {
+        let mut is_news = false;
+        self.shared.update_status(|status| {
+            is_news = status.phase != phase || status.goal_samples != goal.samples;
+            status.phase = phase;
+            status.goal_samples = goal.samples;
+            status.seconds_left = None;
+            status.samples = work.film.n_samples();
+        });
+        if is_news {
+            self.shared.wake();
+        }
+    }
+
+    fn set_phase(&self, phase: Phase) {
+        self.shared.update_status(|status| status.phase = phase);
+        self.shared.wake();
+    }
+
+    /// A panic fails one job only, and says what it was.
+    fn contained<T>(&self, result: std::thread::Result<T>) -> Option<T> {
+        match result {
+            Ok(value) => Some(value),
+            Err(panic) => {
+                let text = panic
+                    .downcast_ref::<String>()
+                    .cloned()
+                    .or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()))
+                    .unwrap_or_else(|| "unknown".to_owned());
+                self.set_phase(Phase::Failed(format!("the renderer failed: {text}")));
+                None
+            }
+        }
+    }
+
+    /// Builds the world of a job and shows its previews.
+    fn begin(&mut self, generation: u64, job: RenderJob) -> Option<Work<R::World>> {
+        let goal = self.shared.orders().goal;
+        self.shared.update_status(|status| {
+            status.phase = Phase::Building;
+            status.generation = generation;
+            status.samples = 0;
+            status.goal_samples = goal.samples;
+            status.seconds = 0.0;
+            status.seconds_left = None;
+            status.noise_percent = None;
+            status.n_invalid = 0;
+        });
+        let world = Arc::new(self.renderer.prepare(&job));
+        *lock(self.world) = Some(Arc::clone(&world));
+        let trees = self.renderer.trees(&world);
+        self.shared.update_status(|status| {
+            status.phase = Phase::Preview;
+            status.trees = Some(trees);
+        });
+        let film = match self.renderer.film(&world) {
+            Ok(film) => film,
+            Err(error) => {
+                self.set_phase(Phase::Failed(error.to_string()));
+                return None;
+            }
+        };
+        let mut work = Work {
+            generation,
+            job,
+            world,
+            film,
+            n_invalid: 0,
+            seconds: 0.0,
+            is_published: false,
+            last_publish: Instant::now(),
+        };
+        self.preview(&mut work);
+        Some(work)
+    }
+
+    /// The coarse picture, which only closing stops; then finer ones while a full pass is far away,
+    /// which give way to a newer job.
+    fn preview(&mut self, work: &mut Work<R::World>) {
+        let n_pixels = u64::from(work.job.width) * u64::from(work.job.height);
+        let mut scale = plan::preview_scale(n_pixels, self.rate, PREVIEW_SECS);
+        let mut stop = &self.shared.stop_all;
+        while scale > 1 {
+            if !self.coarse(work, scale, stop) {
+                return;
+            }
+            stop = &self.shared.stop_refining;
+            let is_near = n_pixels as f64 <= self.rate * PATIENCE_SECS;
+            if is_near {
+                return;
+            }
+            scale = if scale > 4 { scale / 4 } else { 1 };
+        }
+    }
+
+    fn coarse(&mut self, work: &mut Work<R::World>, scale: u32, stop: &AtomicBool) -> bool {
+        let world = self.renderer.coarse(&work.world, scale);
+        let Ok(mut film) = self.renderer.film(&world) else { return false };
+        let start = Instant::now();
+        let Ok(statistics) = self.renderer.pass(&world, &mut film, 1, stop) else { return false };
+        self.measure(&film, 1, statistics, start.elapsed().as_secs_f64());
+        let frame = self.frame(work, scale, &film);
+        self.publish(work, frame);
+        true
+    }
+
+    /// One pass at full size.
+    fn refine(&mut self, work: &mut Work<R::World>) {
+        let goal = self.shared.orders().goal;
+        let before = work.film.n_samples();
+        let mut n_samples = plan::pass_samples(before, goal.samples);
+        let n_pixels = f64::from(work.job.width) * f64::from(work.job.height);
+        let affordable = (self.rate * PASS_SECS / n_pixels) as u32;
+        n_samples = n_samples.min(affordable.max(1));
+        self.shared.update_status(|status| status.phase = Phase::Refining);
+        let start = Instant::now();
+        let stop = &self.shared.stop_refining;
+        let passed = self.renderer.pass(&work.world, &mut work.film, n_samples, stop);
+        let seconds = start.elapsed().as_secs_f64();
+        work.seconds += seconds;
+        let Ok(statistics) = passed else { return };
+        work.n_invalid += statistics.n_invalid;
+        self.measure(&work.film, n_samples, statistics, seconds);
+        self.shared.update_status(|status| {
+            status.samples = work.film.n_samples();
+            status.goal_samples = goal.samples;
+            status.seconds = work.seconds;
+            status.noise_percent = work.film.noise_percent();
+            status.n_invalid = work.n_invalid;
+            status.rays_per_second = self.rays_per_second;
+            status.seconds_left = seconds_left(&goal, work);
+        });
+        let is_last = is_reached(&goal, work);
+        let is_first = before == 0 || !work.is_published;
+        if is_first || is_last || work.last_publish.elapsed() >= PUBLISH_INTERVAL {
+            let frame = self.frame(work, 1, &work.film);
+            self.publish(work, frame);
+        }
+    }
+
+    fn measure(&mut self, film: &Film, n_samples: u32, pass: PassStatistics, seconds: f64) {
+        let seconds = seconds.max(1e-6);
+        let n = f64::from(film.width()) * f64::from(film.height()) * f64::from(n_samples);
+        // A few pixels say little.
+        if n >= 256.0 {
+            self.rate = n / seconds;
+        }
+        self.rays_per_second = pass.n_rays as f64 / seconds;
+    }
+
+    fn frame(&mut self, work: &Work<R::World>, scale: u32, film: &Film) -> Frame {
+        self.sequence += 1;
+        Frame {
+            generation: work.generation,
+            sequence: self.sequence,
+            job: work.job.clone(),
+            scale,
+            picture: film.picture(),
+            samples: film.n_samples(),
+            noise_percent: film.noise_percent(),
+        }
+    }
+
+    fn publish(&self, work: &mut Work<R::World>, frame: Frame) {
+        *lock(&self.shared.slot) = Some(Arc::new(frame));
+        work.is_published = true;
+        work.last_publish = Instant::now();
+        self.shared.wake();
+    }
+}
+
+fn is_reached<W>(goal: &Goal, work: &Work<W>) -> bool {
+    let n_samples = work.film.n_samples();
+    let is_clean = n_samples >= LEAST_FOR_NOISE
+        && goal.noise_percent.zip(work.film.noise_percent()).is_some_and(|(goal, now)| now <= goal);
+    n_samples >= goal.samples
+        || is_clean
+        || (n_samples > 0 && goal.seconds.is_some_and(|seconds| work.seconds >= seconds))
+}
+
+/// To the nearest of the goals, at the speed so far; noise falls with the square root of samples.
+fn seconds_left<W>(goal: &Goal, work: &Work<W>) -> Option<f64> {
+    let n_samples = f64::from(work.film.n_samples());
+    if n_samples == 0.0 {
+        return None;
+    }
+    let by_samples = work.seconds * (f64::from(goal.samples) / n_samples - 1.0);
+    let by_time = goal.seconds.map(|seconds| seconds - work.seconds);
+    let by_noise = goal
+        .noise_percent
+        .zip(work.film.noise_percent())
+        .map(|(goal, now)| work.seconds * ((now / goal).powi(2) - 1.0));
+    let nearest = [by_time, by_noise].into_iter().flatten().fold(by_samples, f64::min);
+    Some(nearest.max(0.0))
+}

@@ -1,0 +1,101 @@
+//! What the session drives: the real renderer, or a script in tests.
+
+use std::sync::atomic::AtomicBool;
+
+use crate::geometry::TreeStatistics;
+use crate::render::film::FilmTooLarge;
+use crate::render::{Film, PassStatistics, Pick, RenderJob, Stopped, World, render_pass};
+use crate::threads;
+
+/// Turns jobs into films.
+pub trait Renderer: Send + Sync + 'static {
+    /// A job made ready.
+    type World: Send + Sync;
+
+    /// Makes a job ready; may take as long as building its trees does.
+    fn prepare(&self, job: &RenderJob) -> Self::World;
+
+    /// The same, for a smaller picture of a scene that is ready.
+    fn coarse(&self, world: &Self::World, scale: u32) -> Self::World;
+
+    /// An empty film for a world.
+    ///
+    /// # Errors
+    /// When it does not fit into memory.
+    fn film(&self, world: &Self::World) -> Result<Film, FilmTooLarge>;
+
+    /// Adds samples to a film.
+    ///
+    /// # Errors
+    /// [`Stopped`]; the film is untouched then.
+    fn pass(
+        &self,
+        world: &Self::World,
+        film: &mut Film,
+        n_samples: u32,
+        stop: &AtomicBool,
+    ) -> Result<PassStatistics, Stopped>;
+
+    /// What the middle ray of a pixel meets.
+    fn pick(&self, world: &Self::World, x: f32, y: f32) -> Option<Pick>;
+
+    /// Size of a world's trees.
+    fn trees(&self, world: &Self::World) -> TreeStatistics;
+
+    /// Threads that it renders with.
+    fn n_threads(&self) -> usize;
+}
+
+/// The real renderer, on a pool of its own at low priority.
+#[derive(Debug)]
+pub struct PoolRenderer {
+    pool: rayon::ThreadPool,
+}
+
+impl PoolRenderer {
+    /// Starts `n_threads` (at least 1) threads.
+    ///
+    /// # Errors
+    /// When the system has no thread left.
+    pub fn new(n_threads: usize) -> std::io::Result<Self> {
+        Ok(Self { pool: threads::background_pool("render", n_threads)? })
+    }
+}
+
+impl Renderer for PoolRenderer {
+    type World = World;
+
+    fn prepare(&self, job: &RenderJob) -> World {
+        self.pool.install(|| World::new(job.clone()))
+    }
+
+    fn coarse(&self, world: &World, scale: u32) -> World {
+        self.pool.install(|| World::new(world.job.coarse(scale)))
+    }
+
+    fn film(&self, world: &World) -> Result<Film, FilmTooLarge> {
+        Film::new(world.job.width, world.job.height)
+    }
+
+    fn pass(
+        &self,
+        world: &World,
+        film: &mut Film,
+        n_samples: u32,
+        stop: &AtomicBool,
+    ) -> Result<PassStatistics, Stopped> {
+        self.pool.install(|| render_pass(world, film, n_samples, stop))
+    }
+
+    fn pick(&self, world: &World, x: f32, y: f32) -> Option<Pick> {
+        world.pick(x, y)
+    }
+
+    fn trees(&self, world: &World) -> TreeStatistics {
+        world.geometry.statistics()
+    }
+
+    fn n_threads(&self) -> usize {
+        self.pool.current_num_threads()
+    }
+}
