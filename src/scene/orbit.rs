@@ -184,8 +184,7 @@ fn turn(camera: &CameraDescription, yaw_deg: f64, pitch_deg: f64) -> Option<DQua
     let axis = DVec3::from(camera.up).try_normalize()?;
     let elevation_deg = axes.forward.dot(axis).clamp(-1.0, 1.0).asin().to_degrees();
     let limit_deg = 90.0 - POLE_MARGIN_DEG;
-    let pitch_deg =
-        (elevation_deg + pitch_deg).clamp(-limit_deg, limit_deg) - elevation_deg;
+    let pitch_deg = (elevation_deg + pitch_deg).clamp(-limit_deg, limit_deg) - elevation_deg;
     let pitch = DQuat::from_axis_angle(axes.right, pitch_deg.to_radians());
     Some(DQuat::from_axis_angle(axis, yaw_deg.to_radians()) * pitch)
 }

@@ -8,8 +8,8 @@ use super::toolbar::ToolbarChoice;
 use super::viewport::Click;
 use crate::document::Document;
 use crate::loader::{LoadError, Loaded, Source};
-use crate::scene::description::{SceneDescription, ToneOperator};
 use crate::scene::Assets;
+use crate::scene::description::{SceneDescription, ToneOperator};
 use crate::scene::orbit::{self, StandardView};
 use crate::scene::resolve::ResolveError;
 use egui::ViewportCommand;
@@ -153,9 +153,8 @@ impl App {
 
     /// Opens a file that was dropped on the window.
     pub(super) fn take_dropped_file(&mut self, ctx: &egui::Context) {
-        let dropped: Option<PathBuf> = ctx.input(|input| {
-            input.raw.dropped_files.first().map(|file| file.path().to_owned())
-        });
+        let dropped: Option<PathBuf> =
+            ctx.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()));
         if let Some(path) = dropped {
             self.open(Source::File(path));
         }
@@ -214,7 +213,8 @@ impl App {
         if !report.is_empty() {
             let n_lines = report.len();
             let first = &report[0];
-            let more = if n_lines > 1 { format!(" (and {} more)", n_lines - 1) } else { String::new() };
+            let more =
+                if n_lines > 1 { format!(" (and {} more)", n_lines - 1) } else { String::new() };
             self.toasts.say(format!("{first}{more}"));
         }
         self.files.report = report;

@@ -51,8 +51,7 @@ impl PathDialogs {
         let started = match purpose {
             Purpose::Open => {
                 let filter = ["toml", "obj", "png"];
-                let chosen =
-                    dialog.add_filter("Scenes, meshes, snapshots", &filter).pick_file();
+                let chosen = dialog.add_filter("Scenes, meshes, snapshots", &filter).pick_file();
                 threads::spawn("file dialog", move || {
                     let path = pollster::block_on(chosen).map(|file| file.path().to_owned());
                     let _ = sender.send(path);
@@ -132,35 +131,37 @@ fn path_box(ctx: &egui::Context, typing: &mut Typing) -> BoxAnswer {
         .order(egui::Order::Foreground)
         .anchor(Align2::CENTER_TOP, Vec2::new(0.0, 64.0))
         .show(ctx, |ui| {
-            egui::Frame::popup(ui.style()).inner_margin(14).show(ui, |ui| {
-                ui.label(RichText::new(title).strong());
-                ui.add_space(4.0);
-                ui.horizontal(|ui| {
-                    let field = egui::TextEdit::singleline(&mut typing.text)
-                        .hint_text("path of a file")
-                        .desired_width(380.0);
-                    let response = ui.add(field).accessible_name("Path");
-                    if typing.is_new {
-                        response.request_focus();
-                        typing.is_new = false;
-                    }
-                    let entered =
-                        response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-                    let ready = !typing.text.trim().is_empty();
-                    let confirmed = ui.add_enabled(ready, egui::Button::new(button)).clicked();
-                    let cancelled = ui.button("Cancel").clicked()
-                        || ui.input(|input| input.key_pressed(Key::Escape));
-                    if cancelled {
-                        BoxAnswer::Cancelled
-                    } else if confirmed || entered {
-                        BoxAnswer::Chosen
-                    } else {
-                        BoxAnswer::Typing
-                    }
+            egui::Frame::popup(ui.style())
+                .inner_margin(14)
+                .show(ui, |ui| {
+                    ui.label(RichText::new(title).strong());
+                    ui.add_space(4.0);
+                    ui.horizontal(|ui| {
+                        let field = egui::TextEdit::singleline(&mut typing.text)
+                            .hint_text("path of a file")
+                            .desired_width(380.0);
+                        let response = ui.add(field).accessible_name("Path");
+                        if typing.is_new {
+                            response.request_focus();
+                            typing.is_new = false;
+                        }
+                        let entered = response.lost_focus()
+                            && ui.input(|input| input.key_pressed(Key::Enter));
+                        let ready = !typing.text.trim().is_empty();
+                        let confirmed = ui.add_enabled(ready, egui::Button::new(button)).clicked();
+                        let cancelled = ui.button("Cancel").clicked()
+                            || ui.input(|input| input.key_pressed(Key::Escape));
+                        if cancelled {
+                            BoxAnswer::Cancelled
+                        } else if confirmed || entered {
+                            BoxAnswer::Chosen
+                        } else {
+                            BoxAnswer::Typing
+                        }
+                    })
+                    .inner
                 })
                 .inner
-            })
-            .inner
         })
         .inner
 }

@@ -65,8 +65,7 @@ pub(super) struct Binding {
     pub(super) does: &'static str,
 }
 
-const COMMAND_SHIFT: Modifiers =
-    Modifiers { shift: true, command: true, ..Modifiers::NONE };
+const COMMAND_SHIFT: Modifiers = Modifiers { shift: true, command: true, ..Modifiers::NONE };
 
 /// Every key the window listens to. Where one action has several, the first is named in tooltips.
 pub(super) const BINDINGS: &[Binding] = &[

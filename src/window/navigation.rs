@@ -101,10 +101,8 @@ impl Navigation {
     fn distance(&self, camera: &CameraDescription) -> f64 {
         let target = orbit::project(camera, self.pivot(camera), 1.0, 1.0);
         let depth = target.map_or(0.0, |(_, _, depth)| depth);
-        let to_target = (0..3)
-            .map(|axis| (camera.target[axis] - camera.eye[axis]).powi(2))
-            .sum::<f64>()
-            .sqrt();
+        let to_target =
+            (0..3).map(|axis| (camera.target[axis] - camera.eye[axis]).powi(2)).sum::<f64>().sqrt();
         if depth > to_target * 1e-3 { depth } else { to_target }
     }
 }

@@ -166,8 +166,7 @@ mod tests {
     fn the_line_tells_samples_noise_time_rate_and_threads() {
         let line = line(Work::Rendering);
         let told = format!("{} {}", work_text(&line.work, 48, 256), details(&line));
-        let expected =
-            "rendering 48/256 · noise 2.1 % · 3 s, 12 s left · 8.4 Mrays/s · 2 threads";
+        let expected = "rendering 48/256 · noise 2.1 % · 3 s, 12 s left · 8.4 Mrays/s · 2 threads";
         assert_eq!(told, expected, "the line reads differently");
     }
 

@@ -2,8 +2,8 @@
 //! on a thread of its own; the newest order wins.
 
 use super::background::Background;
-use crate::render::{Film, RenderJob, RenderSettings, World, render_pass};
 use crate::geometry::AcceleratorKind;
+use crate::render::{Film, RenderJob, RenderSettings, World, render_pass};
 use crate::scene::description::{
     CameraDescription, ColorOrTexture, EnvironmentDescription, IntegratorKind, LightDescription,
     LightKind, MaterialDescription, ObjectDescription, ObjectKind, OneOrTwo, RenderDescription,

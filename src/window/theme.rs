@@ -3,7 +3,9 @@
 //! Greys carry no hue, so that they do not tint the eye's judgement of the picture; the accent is
 //! the warm edge of a shadow and marks only what is active.
 
-use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, Stroke, Style, TextStyle, Theme, Vec2};
+use egui::{
+    Color32, CornerRadius, FontFamily, FontId, Margin, Stroke, Style, TextStyle, Theme, Vec2,
+};
 
 /// Width of the column of names in the panel, in points.
 pub(super) const LABEL_WIDTH: f32 = 96.0;

@@ -67,7 +67,11 @@ pub(super) fn toolbar_ui(
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             let panel = Button::selectable(facts.panel_shown, "Panel");
-            if ui.add(panel).on_hover_text(hint("the panel with all settings", Action::TogglePanel)).clicked() {
+            if ui
+                .add(panel)
+                .on_hover_text(hint("the panel with all settings", Action::TogglePanel))
+                .clicked()
+            {
                 chosen = Some(ToolbarChoice::Do(Action::TogglePanel));
             }
             button(ui, "Help", "all keys", Action::Help, true, &mut chosen);

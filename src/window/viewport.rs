@@ -191,7 +191,11 @@ mod tests {
             let size = physical_size(VIEW, per_point);
             let at = picture_rect(VIEW, size, Zoom::Fit, per_point);
             let pixels = at.width() * per_point;
-            assert!((pixels - size[0] as f32).abs() < 1e-3, "{pixels} of {} at {per_point}", size[0]);
+            assert!(
+                (pixels - size[0] as f32).abs() < 1e-3,
+                "{pixels} of {} at {per_point}",
+                size[0]
+            );
             let corner = at.min.x * per_point;
             assert!((corner - corner.round()).abs() < 1e-3, "corner at {corner}");
         }

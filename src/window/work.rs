@@ -58,10 +58,7 @@ impl RenderWork {
     /// The box around everything but planes; empty where there is nothing.
     pub(super) fn bounds(&self) -> Aabb {
         let objects = self.scene().map_or(&[][..], |scene| &scene.objects);
-        objects
-            .iter()
-            .filter_map(|object| object.instance.bounds())
-            .fold(Aabb::EMPTY, Aabb::union)
+        objects.iter().filter_map(|object| object.instance.bounds()).fold(Aabb::EMPTY, Aabb::union)
     }
 
     /// Submits the job that the description, the settings and this picture size make. Gives back

@@ -66,12 +66,7 @@ fn lens_ui(
     lens_diagram(ui, camera, sharp_range(camera));
 }
 
-fn focus_ui(
-    ui: &mut Ui,
-    camera: &mut CameraDescription,
-    focus: f64,
-    picking_focus: &mut bool,
-) {
+fn focus_ui(ui: &mut Ui, camera: &mut CameraDescription, focus: f64, picking_focus: &mut bool) {
     let mut distance = focus;
     Figure::new("Focus", "camera.focal_distance".to_owned(), focus * 0.0..=focus_span(camera))
         .allowed(1e-6..=1e12)
@@ -84,7 +79,10 @@ fn focus_ui(
     row(ui, "", "", |ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
         let pick = ui.selectable_label(*picking_focus, "Pick in picture");
-        if pick.on_hover_text("then click on what should be sharp (Ctrl+click does it at once)").clicked() {
+        if pick
+            .on_hover_text("then click on what should be sharp (Ctrl+click does it at once)")
+            .clicked()
+        {
             *picking_focus = !*picking_focus;
         }
         let follows = camera.focal_distance.is_none();

@@ -64,9 +64,17 @@ fn histogram(ui: &mut Ui, statistics: &PictureStatistics) {
     let inner = statistics.histogram.iter().flat_map(|counts| &counts[1..63]);
     let highest = inner.copied().max().unwrap_or(0).max(1) as f32;
     let colors = if ui.visuals().dark_mode {
-        [Color32::from_rgb(190, 60, 50), Color32::from_rgb(60, 150, 70), Color32::from_rgb(60, 95, 190)]
+        [
+            Color32::from_rgb(190, 60, 50),
+            Color32::from_rgb(60, 150, 70),
+            Color32::from_rgb(60, 95, 190),
+        ]
     } else {
-        [Color32::from_rgb(225, 110, 100), Color32::from_rgb(100, 190, 110), Color32::from_rgb(105, 140, 225)]
+        [
+            Color32::from_rgb(225, 110, 100),
+            Color32::from_rgb(100, 190, 110),
+            Color32::from_rgb(105, 140, 225),
+        ]
     };
     for (counts, color) in statistics.histogram.iter().zip(colors) {
         let step = area.width() / counts.len() as f32;

@@ -38,7 +38,8 @@ pub(super) fn lens_diagram(
     let bottom = plot.lens + Vec2::new(0.0, opening);
     let spot = pos2(plot.x(focus), plot.lens.y);
     for edge in [top, bottom] {
-        painter.line_segment([edge, beyond(edge, spot, plot.area.right())], Stroke::new(1.0, accent));
+        painter
+            .line_segment([edge, beyond(edge, spot, plot.area.right())], Stroke::new(1.0, accent));
     }
     painter.line_segment([top, bottom], Stroke::new(3.0, ui.visuals().strong_text_color()));
     painter.vline(spot.x, plot.area.y_range(), Stroke::new(1.5, accent));

@@ -102,12 +102,7 @@ fn material_ui(
     bump_ui(ui, &mut material.bump, &path("bump.height"), textures);
 }
 
-fn roughness_ui(
-    ui: &mut Ui,
-    material: &mut MaterialDescription,
-    prefix: &str,
-    linked: &mut bool,
-) {
+fn roughness_ui(ui: &mut Ui, material: &mut MaterialDescription, prefix: &str, linked: &mut bool) {
     let figure = |label, key: &str, help| {
         Figure::new(label, format!("{prefix}.{key}"), 0.01..=1.0)
             .allowed(1e-4..=1e3)
@@ -174,12 +169,8 @@ pub(super) fn color_or_texture(
             crate::window::color::swatch(ui, label, path, help, 44.0, highest, color);
         }
         let names = textures.iter().map(|(name, _)| name.as_str());
-        let picked = pick_one(
-            ui,
-            &format!("{label} from"),
-            &shown,
-            std::iter::once(A_COLOUR).chain(names),
-        );
+        let picked =
+            pick_one(ui, &format!("{label} from"), &shown, std::iter::once(A_COLOUR).chain(names));
         match picked {
             None => {}
             Some(0) => {

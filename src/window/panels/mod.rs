@@ -55,13 +55,12 @@ pub(super) fn section(
         state.toggle(ui);
     }
     state.show_body_unindented(ui, |ui| {
-        egui::Frame::new().inner_margin(egui::Margin { left: 4, right: 4, top: 2, bottom: 8 }).show(
-            ui,
-            |ui| {
+        egui::Frame::new()
+            .inner_margin(egui::Margin { left: 4, right: 4, top: 2, bottom: 8 })
+            .show(ui, |ui| {
                 ui.set_width(ui.available_width());
                 contents(ui);
-            },
-        );
+            });
     });
     let line = theme::hairline(ui.visuals());
     let rect = ui.max_rect();

@@ -55,7 +55,8 @@ fn object_ui(ui: &mut Ui, object: &mut ObjectDescription, materials: &[String], 
         ui.checkbox(&mut object.enabled, "Enabled").on_hover_text("off: as if it were not there");
     });
     row(ui, "Shape", "", |ui| {
-        let shown = KINDS.iter().find(|(kind, _)| *kind == object.kind).map_or("", |(_, name)| name);
+        let shown =
+            KINDS.iter().find(|(kind, _)| *kind == object.kind).map_or("", |(_, name)| name);
         // A mesh needs its file first.
         let offered: Vec<(ObjectKind, &str)> = KINDS
             .into_iter()

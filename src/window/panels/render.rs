@@ -134,6 +134,12 @@ fn noise_graph(ui: &mut Ui, noise: &[(u32, f64)]) {
         (rect.left_bottom(), egui::Align2::LEFT_BOTTOM, format!("{}", first.0)),
     ] {
         let inset = (rect.center() - at).normalized() * 8.0;
-        painter.text(at + Vec2::new(inset.x, inset.y.signum() * 2.0), align, text, font.clone(), quiet);
+        painter.text(
+            at + Vec2::new(inset.x, inset.y.signum() * 2.0),
+            align,
+            text,
+            font.clone(),
+            quiet,
+        );
     }
 }

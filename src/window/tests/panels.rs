@@ -5,8 +5,8 @@ use crate::scene::description::{
     ColorOrTexture, IntegratorKind, LightKind, SceneDescription, ToneOperator, WardForm,
 };
 use crate::window::panels::{
-    DisplayState, RenderFacts, Selection, SizeMode, camera_ui, display_ui, lights_ui,
-    materials_ui, objects_ui, render_ui, textures_ui,
+    DisplayState, RenderFacts, Selection, SizeMode, camera_ui, display_ui, lights_ui, materials_ui,
+    objects_ui, render_ui, textures_ui,
 };
 use crate::window::theme;
 use egui::Role;

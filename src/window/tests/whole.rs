@@ -126,9 +126,7 @@ fn a_broken_file_leaves_the_scene_and_says_why() {
 fn done_means_no_more_frames_are_asked_for() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = window(&scene_file(folder.path()), [1024.0, 700.0]);
-    wait_until(&mut harness, |app| {
-        app.work.session.status().phase == crate::session::Phase::Done
-    });
+    wait_until(&mut harness, |app| app.work.session.status().phase == crate::session::Phase::Done);
     harness.run_steps(40);
     let frames = harness.try_run();
     assert!(frames.is_ok(), "the window keeps repainting: {frames:?}");
