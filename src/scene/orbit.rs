@@ -178,6 +178,13 @@ pub fn units_per_pixel(camera: &CameraDescription, depth: f64, height: f64) -> f
     2.0 * (camera.vertical_fov.to_radians() / 2.0).tan() * depth / height
 }
 
+/// Diameter of the blur of a point at that depth, in pixels of a picture `height` pixels high.
+pub fn blur_px(camera: &CameraDescription, depth: f64, height: f64) -> f64 {
+    let focus = focal_distance(camera);
+    let in_plane_of_focus = 2.0 * camera.aperture_radius * (depth - focus).abs() / depth;
+    in_plane_of_focus / units_per_pixel(camera, focus, height)
+}
+
 /// Yaw about `up`, then pitch about the turned right, the pitch held off the poles.
 fn turn(camera: &CameraDescription, yaw_deg: f64, pitch_deg: f64) -> Option<DQuat> {
     let axes = view_axes(camera)?;
@@ -339,6 +346,17 @@ mod tests {
             let away = distance(moved.eye, moved.target);
             assert!((away - 5.0).abs() < 1e-9, "{view:?} is {away} away");
         }
+    }
+
+    #[test]
+    fn blur_is_what_similar_triangles_say() {
+        let mut camera = camera();
+        camera.aperture_radius = 0.1;
+        // Twice as far as the focus: the cone is as wide as half the lens in the plane of focus.
+        let pixel = units_per_pixel(&camera, 5.0, 600.0);
+        let blur = blur_px(&camera, 10.0, 600.0);
+        assert!((blur - 0.1 / pixel).abs() < 1e-9, "blur {blur}");
+        assert_eq!(blur_px(&camera, 5.0, 600.0), 0.0, "the plane of focus is blurred");
     }
 
     #[test]

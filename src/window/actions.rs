@@ -1,9 +1,11 @@
 //! What each action does, and what comes back from the threads that work for the window.
 
 use super::app::App;
+use super::compare::{CompareChoice, Pinned};
 use super::dialogs::{Purpose, UnsavedAnswer, unsaved_question};
 use super::files::{Pending, Written, file_title};
 use super::keys::Action;
+use super::panels::PickFor;
 use super::toolbar::ToolbarChoice;
 use super::viewport::Click;
 use crate::document::Document;
@@ -58,6 +60,7 @@ impl App {
                 }
                 scene.clone_from(&self.document.description);
             }
+            Action::Compare => self.toggle_compare(ctx),
             Action::TogglePanel => self.interface.panel_shown = !self.interface.panel_shown,
             Action::FullScreen => {
                 let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
@@ -135,20 +138,37 @@ impl App {
     /// Answers the question that a click in the picture asked of the renderer.
     pub(super) fn take_pick(&mut self, scene: &mut SceneDescription) {
         let Some(picked) = self.work.session.take_picked() else { return };
-        let Some(click) = self.awaited_click.take() else { return };
-        match (click, picked.pick) {
-            (Click::Focus(..), Some(pick)) => {
-                scene.camera.focal_distance = Some(f64::from(pick.depth));
-                self.gesture.next();
-            }
-            (Click::TurnAbout(..), Some(pick)) => {
-                self.interface.navigation.pivot = Some(pick.point.map(f64::from));
+        let asked = self.awaited_click.filter(|click| {
+            let (Click::For(_, x, y) | Click::TurnAbout(x, y)) = *click;
+            (x, y) == (picked.x, picked.y)
+        });
+        let Some(click) = asked else {
+            self.probe.take(&picked, scene, self.picture_size()[1]);
+            return;
+        };
+        self.awaited_click = None;
+        let Some(pick) = picked.pick else {
+            self.toasts.say("there is nothing under the cursor");
+            return;
+        };
+        let (point, depth) = (pick.point.map(f64::from), f64::from(pick.depth));
+        let eye = scene.camera.eye;
+        let light = scene.lights.get_mut(self.interface.selection.light);
+        match (click, light) {
+            (Click::TurnAbout(..), _) => {
+                self.interface.navigation.pivot = Some(point);
                 self.toasts.say("the camera turns about this point now");
             }
-            (Click::Focus(..) | Click::TurnAbout(..), None) => {
-                self.toasts.say("there is nothing under the cursor");
+            (Click::For(PickFor::Focus, ..), _) => scene.camera.focal_distance = Some(depth),
+            (Click::For(PickFor::LightTarget, ..), Some(light)) => light.target = point,
+            (Click::For(PickFor::LightPosition, ..), Some(light)) => {
+                // Off the surface towards the eye, so that it shines.
+                let towards = |axis: usize| point[axis] + (eye[axis] - point[axis]) * 0.12;
+                light.position = [towards(0), towards(1), towards(2)];
             }
+            (Click::For(PickFor::LightTarget | PickFor::LightPosition, ..), None) => {}
         }
+        self.gesture.next();
     }
 
     /// Opens a file that was dropped on the window.
@@ -220,6 +240,8 @@ impl App {
         self.files.report = report;
         self.home_camera = description.camera.clone();
         self.interface.forget_scene();
+        self.pinned = None;
+        self.awaited_click = None;
         self.work.set_assets(Arc::new(assets));
         self.document = Document::new(description, self.files.scene_path.clone());
         self.gesture.next();
@@ -275,7 +297,7 @@ impl App {
 
     fn cancel(&mut self, ctx: &egui::Context) {
         let closed = std::mem::take(&mut self.interface.help_shown)
-            || std::mem::take(&mut self.interface.picking_focus)
+            || self.interface.picking.take().is_some()
             || self.dialogs.dismiss()
             || self.files.cancel_loading()
             || self.toasts.dismiss();
@@ -283,6 +305,29 @@ impl App {
         if !closed && full {
             ctx.send_viewport_cmd(ViewportCommand::Fullscreen(false));
         }
+    }
+
+    /// Pins the picture on show, or lets the pinned one go.
+    fn toggle_compare(&mut self, ctx: &egui::Context) {
+        if self.pinned.take().is_some() {
+            return;
+        }
+        match self.picture_on_show() {
+            Some(image) => {
+                let description = self.document.description.clone();
+                self.pinned = Some(Pinned::new(ctx, image, description));
+            }
+            None => self.toasts.say("there is no picture to pin yet"),
+        }
+    }
+
+    /// Does what was chosen at the pinned picture.
+    pub(super) fn do_compare(&mut self, scene: &mut SceneDescription, choice: CompareChoice) {
+        if let (CompareChoice::Restore, Some(pinned)) = (choice, &self.pinned) {
+            scene.clone_from(&pinned.description);
+            self.gesture.next();
+        }
+        self.pinned = None;
     }
 
     fn frame_all(&mut self, scene: &mut SceneDescription) {

@@ -42,6 +42,8 @@ pub(super) enum Action {
     Undo,
     /// Makes the edit again that was taken back.
     Redo,
+    /// Pins the picture to compare with, or lets it go.
+    Compare,
     /// Shows the panel, or hides it.
     TogglePanel,
     /// Fills the screen, or goes back to a window.
@@ -88,6 +90,7 @@ pub(super) const BINDINGS: &[Binding] = &[
     key(Action::Undo, Modifiers::COMMAND, Key::Z, "undo"),
     key(Action::Redo, COMMAND_SHIFT, Key::Z, "redo"),
     key(Action::Redo, Modifiers::COMMAND, Key::Y, "redo"),
+    key(Action::Compare, Modifiers::NONE, Key::X, "pin the picture and compare"),
     key(Action::TogglePanel, Modifiers::NONE, Key::N, "panel"),
     key(Action::FullScreen, Modifiers::NONE, Key::F11, "full screen"),
     key(Action::Help, Modifiers::NONE, Key::H, "this help"),
@@ -145,10 +148,7 @@ pub(super) fn pressed(ctx: &egui::Context, flying: bool) -> Vec<Action> {
 
 /// The keys of an action as a person reads them: "Ctrl+Shift+S". Empty where it has none.
 pub(super) fn shown(action: Action) -> String {
-    BINDINGS
-        .iter()
-        .find(|binding| binding.action == action)
-        .map_or_else(String::new, |binding| keys_of(binding))
+    BINDINGS.iter().find(|binding| binding.action == action).map_or_else(String::new, keys_of)
 }
 
 /// A tooltip: what the button does, and its key.

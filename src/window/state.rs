@@ -1,7 +1,7 @@
 //! What the window remembers beside the scene: how it is laid out and what is chosen in it.
 
 use super::navigation::Navigation;
-use super::panels::{DisplayState, Selection, SizeMode};
+use super::panels::{DisplayState, Limits, PickFor, Selection, SizeMode};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -21,8 +21,12 @@ pub(super) struct InterfaceState {
     pub(super) accelerator: usize,
     /// The point the camera turns about.
     pub(super) navigation: Navigation,
-    /// Whether the next click in the picture sets the focus.
-    pub(super) picking_focus: bool,
+    /// What the next click in the picture is for, if it is for anything.
+    pub(super) picking: Option<PickFor>,
+    /// Whether lights are marked in the picture.
+    pub(super) lights_shown: bool,
+    /// When refining stops before its samples are reached.
+    pub(super) limits: Limits,
     /// Whether refining is held.
     pub(super) is_paused: bool,
     /// Whether the panel is shown.
@@ -45,7 +49,9 @@ impl Default for InterfaceState {
             size_mode: SizeMode::default(),
             accelerator: 0,
             navigation: Navigation::default(),
-            picking_focus: false,
+            picking: None,
+            lights_shown: false,
+            limits: Limits::default(),
             is_paused: false,
             panel_shown: true,
             help_shown: false,
@@ -103,7 +109,7 @@ impl InterfaceState {
     pub(super) fn forget_scene(&mut self) {
         self.selection = Selection::default();
         self.navigation = Navigation::default();
-        self.picking_focus = false;
+        self.picking = None;
         self.lens_when_open = None;
     }
 

@@ -53,8 +53,24 @@ pub(super) struct PixelUnderCursor {
     pub(super) linear: [f32; 3],
 }
 
+/// What is under the resting cursor.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Probed {
+    /// Name of the object.
+    pub(super) object: String,
+    /// Distance along the view, in scene units.
+    pub(super) depth: f64,
+    /// Diameter of its blur in pixels.
+    pub(super) blur_px: f64,
+}
+
 /// Shows the bar: the work on the left, the pixel under the cursor and the size on the right.
-pub(super) fn status_ui(ui: &mut Ui, line: &StatusLine, pixel: Option<PixelUnderCursor>) {
+pub(super) fn status_ui(
+    ui: &mut Ui,
+    line: &StatusLine,
+    pixel: Option<PixelUnderCursor>,
+    probed: Option<&Probed>,
+) {
     progress_line(ui, line);
     ui.horizontal_centered(|ui| {
         let [n_done, n_goal] = [line.samples.0, line.samples.1];
@@ -72,6 +88,13 @@ pub(super) fn status_ui(ui: &mut Ui, line: &StatusLine, pixel: Option<PixelUnder
             {
                 ui.label(RichText::new(pixel_text(pixel)).weak())
                     .on_hover_text("the pixel under the cursor: column, row, linear RGB");
+                if let Some(probed) = probed
+                    && ui.available_width() > 260.0
+                {
+                    ui.label(RichText::new(probed_text(probed)).weak()).on_hover_text(
+                        "what is under the cursor: object, depth, diameter of its blur",
+                    );
+                }
             }
         });
     });
@@ -142,6 +165,11 @@ pub(super) fn duration(seconds: f64) -> String {
 fn pixel_text(pixel: PixelUnderCursor) -> String {
     let [r, g, b] = pixel.linear;
     format!("{}, {}: {r:.3} {g:.3} {b:.3} ·", pixel.at[0], pixel.at[1])
+}
+
+fn probed_text(probed: &Probed) -> String {
+    let Probed { object, depth, blur_px } = probed;
+    format!("{object} · depth {} · blur {blur_px:.1} px ·", short(*depth))
 }
 
 #[cfg(test)]

@@ -128,6 +128,7 @@ fn menus(ui: &mut Ui, facts: &ToolbarFacts<'_>, chosen: &mut Option<ToolbarChoic
         item(ui, "Top", Action::ViewTop, chosen);
         ui.separator();
         item(ui, "Lens open or closed", Action::ToggleLens, chosen);
+        item(ui, "Pin and compare", Action::Compare, chosen);
         item(ui, "Restart", Action::Restart, chosen);
         ui.separator();
         item(ui, "Full screen", Action::FullScreen, chosen);

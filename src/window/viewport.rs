@@ -1,6 +1,7 @@
 //! The picture: where it is drawn, and what the mouse does over it.
 
 use super::navigation::{Navigation, is_flying};
+use super::panels::PickFor;
 use super::theme;
 use crate::scene::description::CameraDescription;
 use crate::scene::orbit;
@@ -29,8 +30,8 @@ pub(super) struct Shown<'a> {
 /// What a click in the picture asks for, at a place in pixels of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Click {
-    /// Set the focal distance to what is there.
-    Focus(f32, f32),
+    /// Use what is there for that purpose.
+    For(PickFor, f32, f32),
     /// Turn the camera about what is there.
     TurnAbout(f32, f32),
 }
@@ -39,6 +40,8 @@ pub(super) enum Click {
 pub(super) struct ViewportOutput {
     /// Where it is, in points.
     pub(super) rect: Rect,
+    /// Where the picture is, in points; it may reach beyond the viewport.
+    pub(super) picture: Rect,
     /// A click that needs to know what is under the cursor.
     pub(super) click: Option<Click>,
     /// The picture pixel under the cursor.
@@ -58,7 +61,7 @@ pub(super) fn viewport_ui(
     shown: Option<&Shown<'_>>,
     size: [u32; 2],
     zoom: Zoom,
-    picking_focus: bool,
+    picking: Option<PickFor>,
 ) -> ViewportOutput {
     let rect = ui.available_rect_before_wrap();
     let response = ui.allocate_rect(rect, Sense::click_and_drag());
@@ -80,7 +83,7 @@ pub(super) fn viewport_ui(
     if navigation.turning {
         pivot_cross(&painter, placed, camera, navigation);
     }
-    if picking_focus {
+    if picking.is_some() {
         response.clone().on_hover_cursor(egui::CursorIcon::Crosshair);
     }
 
@@ -93,8 +96,10 @@ pub(super) fn viewport_ui(
         let command = ui.input(|input| input.modifiers.command);
         if response.double_clicked_by(PointerButton::Primary) && !command {
             Some(Click::TurnAbout(x, y))
-        } else if response.clicked_by(PointerButton::Primary) && (command || picking_focus) {
-            Some(Click::Focus(x, y))
+        } else if response.clicked_by(PointerButton::Primary) && command {
+            Some(Click::For(PickFor::Focus, x, y))
+        } else if response.clicked_by(PointerButton::Primary) {
+            picking.map(|purpose| Click::For(purpose, x, y))
         } else {
             None
         }
@@ -105,6 +110,7 @@ pub(super) fn viewport_ui(
     });
     ViewportOutput {
         rect,
+        picture: placed,
         click,
         hovered_pixel,
         zoom_percent: f64::from(placed.width() * per_point) / f64::from(size[0]) * 100.0,

@@ -1,7 +1,7 @@
 //! The scene as a job: built from the document each frame, resolved again only where it changed,
 //! handed to the session, which finds out what is new.
 
-use super::panels::SizeMode;
+use super::panels::{Limits, SizeMode};
 use super::state::InterfaceState;
 use crate::geometry::AcceleratorKind;
 use crate::math::Aabb;
@@ -89,7 +89,8 @@ impl RenderWork {
             height,
             settings: RenderSettings::new(render, accelerator),
         };
-        let goal = Goal { samples: render.samples, seconds: None, noise_percent: None };
+        let Limits { seconds, noise_percent } = interface.limits;
+        let goal = Goal { samples: render.samples, seconds, noise_percent };
         self.session.submit(&job, goal);
         self.job = Some(job);
         Ok(())

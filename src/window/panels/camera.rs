@@ -1,7 +1,7 @@
 //! Camera and lens: aperture, focus, field of view, and what is sharp.
 
 use super::lens_diagram::lens_diagram;
-use super::subheading;
+use super::{PickFor, subheading};
 use crate::scene::description::CameraDescription;
 use crate::scene::orbit;
 use crate::window::widgets::{Figure, row, short, triple};
@@ -13,14 +13,14 @@ const SENSOR_HEIGHT_MM: f64 = 24.0;
 const SHARP_BLUR: f64 = 1.0 / 1500.0;
 
 /// Lens and place of the camera. `scene_unit_mm` is what one scene unit stands for in the shown
-/// f-number; `picking_focus` is set where the next click in the picture sets the focus.
+/// f-number; `picking` is set where the next click in the picture sets the focus.
 pub(in crate::window) fn camera_ui(
     ui: &mut Ui,
     camera: &mut CameraDescription,
     scene_unit_mm: &mut f64,
-    picking_focus: &mut bool,
+    picking: &mut Option<PickFor>,
 ) {
-    lens_ui(ui, camera, scene_unit_mm, picking_focus);
+    lens_ui(ui, camera, scene_unit_mm, picking);
     subheading(ui, "Place");
     let reach = orbit::focal_distance(camera);
     let speed = (reach * 0.004).max(1e-5);
@@ -38,7 +38,7 @@ fn lens_ui(
     ui: &mut Ui,
     camera: &mut CameraDescription,
     scene_unit_mm: &mut f64,
-    picking_focus: &mut bool,
+    picking: &mut Option<PickFor>,
 ) {
     let focus = orbit::focal_distance(camera);
     let widest = (focus * 0.2).max(1e-3);
@@ -55,7 +55,7 @@ fn lens_ui(
             unit_ui(ui, scene_unit_mm);
         });
     });
-    focus_ui(ui, camera, focus, picking_focus);
+    focus_ui(ui, camera, focus, picking);
     Figure::new("Field of view", "camera.vertical_fov".to_owned(), 5.0..=120.0)
         .allowed(0.01..=179.99)
         .unit("°")
@@ -66,7 +66,12 @@ fn lens_ui(
     lens_diagram(ui, camera, sharp_range(camera));
 }
 
-fn focus_ui(ui: &mut Ui, camera: &mut CameraDescription, focus: f64, picking_focus: &mut bool) {
+fn focus_ui(
+    ui: &mut Ui,
+    camera: &mut CameraDescription,
+    focus: f64,
+    picking: &mut Option<PickFor>,
+) {
     let mut distance = focus;
     Figure::new("Focus", "camera.focal_distance".to_owned(), focus * 0.0..=focus_span(camera))
         .allowed(1e-6..=1e12)
@@ -78,15 +83,17 @@ fn focus_ui(ui: &mut Ui, camera: &mut CameraDescription, focus: f64, picking_foc
     }
     row(ui, "", "", |ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
-        let pick = ui.selectable_label(*picking_focus, "Pick in picture");
-        if pick
-            .on_hover_text("then click on what should be sharp (Ctrl+click does it at once)")
-            .clicked()
-        {
-            *picking_focus = !*picking_focus;
+        let is_picking = *picking == Some(PickFor::Focus);
+        let button = egui::Button::selectable(is_picking, "Pick in picture");
+        let pick = ui
+            .add(button.frame_when_inactive(true))
+            .on_hover_text("then click on what should be sharp (Ctrl+click does it at once)");
+        if pick.clicked() {
+            *picking = if is_picking { None } else { Some(PickFor::Focus) };
         }
         let follows = camera.focal_distance.is_none();
-        let follow = ui.selectable_label(follows, "On target");
+        let button = egui::Button::selectable(follows, "On target");
+        let follow = ui.add(button.frame_when_inactive(true));
         if follow.on_hover_text("the focus follows the camera's target").clicked() {
             camera.focal_distance = if follows { Some(focus) } else { None };
         }

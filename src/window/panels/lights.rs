@@ -1,11 +1,11 @@
 //! Lights: kind, place, size, power.
 
 use super::parts::part_list;
-use super::{Selection, path_segment, subheading};
+use super::{PickFor, Selection, path_segment, subheading};
 use crate::scene::description::{LightDescription, LightKind, OneOrTwo, SceneDescription};
 use crate::window::color::strength_and_tint;
 use crate::window::structure::Part;
-use crate::window::widgets::{Figure, pick_one, row, triple};
+use crate::window::widgets::{Figure, pick_one, row, switch, triple};
 use egui::Ui;
 
 const KINDS: [(LightKind, &str); 5] = [
@@ -21,12 +21,16 @@ pub(in crate::window) fn lights_ui(
     ui: &mut Ui,
     scene: &mut SceneDescription,
     selection: &mut Selection,
+    picking: &mut Option<PickFor>,
+    shown_in_picture: &mut bool,
 ) {
     let shown = part_list(ui, scene, Part::Light, &mut selection.light, &mut selection.renaming);
     let reach = super::parts::Placement::of(scene).reach;
     if let Some(light) = shown.and_then(|index| scene.lights.get_mut(index)) {
         light_ui(ui, light, reach);
+        pick_ui(ui, light.kind, picking);
     }
+    switch(ui, "Show in picture", "marks every light; drag a mark to move it", shown_in_picture);
     subheading(ui, "Everywhere");
     let ambient = Figure::new("Ambient", "environment.ambient".to_owned(), 0.0..=2.0)
         .logarithmic(0.001)
@@ -57,6 +61,29 @@ fn light_ui(ui: &mut Ui, light: &mut LightDescription, reach: f64) {
         let help = "the side that shines faces this point";
         triple(ui, "Target", &target, help, speed, &mut light.target);
     }
+}
+
+/// Buttons after which a click in the picture places or turns the light.
+fn pick_ui(ui: &mut Ui, kind: LightKind, picking: &mut Option<PickFor>) {
+    row(ui, "", "", |ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        let faces = !matches!(kind, LightKind::Point | LightKind::Sphere);
+        for (purpose, text, help, offered) in [
+            (
+                PickFor::LightPosition,
+                "Put it…",
+                "then click where it should be, a little off the surface",
+                true,
+            ),
+            (PickFor::LightTarget, "Aim it…", "then click on what it should shine at", faces),
+        ] {
+            let chosen = *picking == Some(purpose);
+            let button = egui::Button::selectable(chosen, text).frame_when_inactive(true);
+            if offered && ui.add(button).on_hover_text(help).clicked() {
+                *picking = if chosen { None } else { Some(purpose) };
+            }
+        }
+    });
 }
 
 fn kind_ui(ui: &mut Ui, light: &mut LightDescription) {

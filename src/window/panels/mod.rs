@@ -16,12 +16,23 @@ pub(super) use display::{DisplayState, PictureStatistics, display_ui};
 pub(super) use lights::lights_ui;
 pub(super) use materials::materials_ui;
 pub(super) use objects::{objects_ui, report_ui};
-pub(super) use render::{RenderFacts, SizeMode, render_ui};
+pub(super) use render::{Limits, RenderFacts, SizeMode, render_ui};
 pub(super) use textures::textures_ui;
 
 use super::theme;
 use egui::collapsing_header::CollapsingState;
 use egui::{Sense, TextStyle, Ui, Vec2};
+
+/// What a click in the picture is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum PickFor {
+    /// The focal distance.
+    Focus,
+    /// The point that the chosen light faces.
+    LightTarget,
+    /// The place of the chosen light.
+    LightPosition,
+}
 
 /// Which part of each list is being edited, and half-typed names.
 #[derive(Clone, Debug, Default)]

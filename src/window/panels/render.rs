@@ -2,8 +2,9 @@
 
 use super::subheading;
 use crate::scene::description::{IntegratorKind, RenderDescription, SamplerKind};
+use crate::window::status::duration;
 use crate::window::theme;
-use crate::window::widgets::{Figure, choice, pick_one, row, short};
+use crate::window::widgets::{Figure, choice, number_box, pick_one, row, short};
 use egui::{Stroke, Ui, Vec2};
 
 /// How large the picture is.
@@ -16,12 +17,23 @@ pub(in crate::window) enum SizeMode {
     Fixed,
 }
 
+/// When refining stops before its samples are reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(in crate::window) struct Limits {
+    /// After that many seconds of rendering.
+    pub(in crate::window) seconds: Option<f64>,
+    /// At that noise, in percent.
+    pub(in crate::window) noise_percent: Option<f64>,
+}
+
 /// What the panel shows and does not edit.
 pub(in crate::window) struct RenderFacts<'a> {
     /// Names of the accelerators, in the order of the list.
     pub(in crate::window) accelerators: &'a [&'a str],
     /// Lines on the tree that was built, name and value.
     pub(in crate::window) tree: Vec<(&'static str, String)>,
+    /// Seconds of rendering so far.
+    pub(in crate::window) seconds: f64,
     /// (samples, noise in percent), in order of samples.
     pub(in crate::window) noise: &'a [(u32, f64)],
 }
@@ -45,6 +57,7 @@ pub(in crate::window) fn render_ui(
     render: &mut RenderDescription,
     size_mode: &mut SizeMode,
     accelerator: &mut usize,
+    limits: &mut Limits,
     facts: &RenderFacts<'_>,
 ) {
     choice(ui, "Size", "", size_mode, &SIZES);
@@ -63,6 +76,7 @@ pub(in crate::window) fn render_ui(
         .default_value(256.0)
         .help("rays per pixel at which the picture is done")
         .show_integer(ui, &mut render.samples);
+    limits_ui(ui, limits);
     choice(ui, "Light", "", &mut render.integrator, &INTEGRATORS);
     Figure::new("Bounces", "render.max_depth".to_owned(), 0.0..=32.0)
         .allowed(0.0..=1024.0)
@@ -92,7 +106,44 @@ pub(in crate::window) fn render_ui(
     if facts.noise.len() > 1 {
         subheading(ui, "Noise by samples");
         noise_graph(ui, facts.noise);
+        ui.label(outlook(facts.noise, facts.seconds));
     }
+}
+
+/// Switches with a figure each: stop after a time, stop at a noise.
+fn limits_ui(ui: &mut Ui, limits: &mut Limits) {
+    let limit = |ui: &mut Ui, label: &str, unit: &str, usual: f64, limit: &mut Option<f64>| {
+        row(ui, "", "", |ui| {
+            let mut on = limit.is_some();
+            if ui.checkbox(&mut on, label).changed() {
+                *limit = on.then_some(usual);
+            }
+            if let Some(value) = limit {
+                let mut typed = *value;
+                let speed = (typed * 0.01).max(0.01);
+                let response = number_box(ui, &mut typed, 64.0, speed, unit, false)
+                    .accessible_name(format!("{label} limit"));
+                if response.changed() && typed.is_finite() {
+                    *value = typed.clamp(0.01, 1e6);
+                }
+            }
+        });
+    };
+    limit(ui, "Stop after", " s", 60.0, &mut limits.seconds);
+    limit(ui, "Stop at noise", " %", 1.0, &mut limits.noise_percent);
+}
+
+/// "2.1 % now, 1 % in about 40 s": noise falls with the square root of the time.
+fn outlook(noise: &[(u32, f64)], seconds: f64) -> String {
+    let Some((_, now)) = noise.last().copied().filter(|(_, now)| 0.0 < *now) else {
+        return String::new();
+    };
+    let mut next = 10.0_f64.powf(now.log10().floor());
+    if now < next * 1.05 {
+        next /= 10.0;
+    }
+    let more = seconds * ((now / next).powi(2) - 1.0);
+    format!("{} % now, {} % in about {}", short(now), short(next), duration(more))
 }
 
 /// Noise against samples, both logarithmic: honest sampling is a line that falls.
@@ -141,5 +192,17 @@ fn noise_graph(ui: &mut Ui, noise: &[(u32, f64)]) {
             font.clone(),
             quiet,
         );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::outlook;
+
+    #[test]
+    fn a_tenth_of_the_noise_takes_a_hundred_times_as_long() {
+        let told = outlook(&[(1, 50.0), (16, 10.0)], 2.0);
+        assert_eq!(told, "10 % now, 1 % in about 3 min 18 s", "another outlook");
+        assert_eq!(outlook(&[(4, 2.0)], 10.0), "2 % now, 1 % in about 30 s", "another outlook");
     }
 }

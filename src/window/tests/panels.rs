@@ -5,8 +5,8 @@ use crate::scene::description::{
     ColorOrTexture, IntegratorKind, LightKind, SceneDescription, ToneOperator, WardForm,
 };
 use crate::window::panels::{
-    DisplayState, RenderFacts, Selection, SizeMode, camera_ui, display_ui, lights_ui, materials_ui,
-    objects_ui, render_ui, textures_ui,
+    DisplayState, Limits, PickFor, RenderFacts, Selection, SizeMode, camera_ui, display_ui,
+    lights_ui, materials_ui, objects_ui, render_ui, textures_ui,
 };
 use crate::window::theme;
 use egui::Role;
@@ -21,7 +21,9 @@ struct Bench {
     accelerator: usize,
     display: DisplayState,
     unit_mm: f64,
-    picking: bool,
+    picking: Option<PickFor>,
+    lights_shown: bool,
+    limits: Limits,
 }
 
 type Panel = fn(&mut egui::Ui, &mut Bench);
@@ -29,7 +31,10 @@ type Panel = fn(&mut egui::Ui, &mut Bench);
 const CAMERA: Panel = |ui, bench| {
     camera_ui(ui, &mut bench.scene.camera, &mut bench.unit_mm, &mut bench.picking);
 };
-const LIGHTS: Panel = |ui, bench| lights_ui(ui, &mut bench.scene, &mut bench.selection);
+const LIGHTS: Panel = |ui, bench| {
+    let (picking, shown) = (&mut bench.picking, &mut bench.lights_shown);
+    lights_ui(ui, &mut bench.scene, &mut bench.selection, picking, shown);
+};
 const MATERIALS: Panel =
     |ui, bench| materials_ui(ui, &mut bench.scene, &mut bench.selection, |_, _, _| ());
 const TEXTURES: Panel =
@@ -41,10 +46,12 @@ const RENDER: Panel = |ui, bench| {
     let facts = RenderFacts {
         accelerators: &["kd-tree", "brute-force"],
         tree: vec![("Nodes", "12".to_owned())],
+        seconds: 1.0,
         noise: &[(1, 20.0), (4, 10.0)],
     };
     let (size, accelerator) = (&mut bench.size_mode, &mut bench.accelerator);
-    render_ui(ui, &mut bench.scene.render, size, accelerator, &facts);
+    let limits = &mut bench.limits;
+    render_ui(ui, &mut bench.scene.render, size, accelerator, limits, &facts);
 };
 const ALL: [Panel; 7] = [CAMERA, LIGHTS, MATERIALS, TEXTURES, OBJECTS, DISPLAY, RENDER];
 
@@ -56,7 +63,9 @@ fn harness(panel: Panel) -> Harness<'static, Bench> {
         accelerator: 0,
         display: DisplayState::default(),
         unit_mm: 100.0,
-        picking: false,
+        picking: None,
+        lights_shown: false,
+        limits: Limits::default(),
     };
     let mut installed = false;
     let mut harness = Harness::builder().with_size([320.0, 900.0]).build_ui_state(
