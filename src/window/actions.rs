@@ -104,10 +104,12 @@ impl App {
         match self.files.loader.take() {
             None | Some(Err(LoadError::Cancelled)) => {}
             Some(Ok(loaded)) if self.files.is_completing => self.take_assets(loaded),
+            Some(Ok(loaded)) if self.files.is_reloading => self.take_reloaded(loaded),
             Some(Ok(loaded)) => self.take_scene(ctx, loaded),
             Some(Err(failure)) => {
                 self.files.loading = None;
                 self.files.is_completing = false;
+                self.files.is_reloading = false;
                 self.toasts.fail(failure.to_string());
             }
         }
@@ -121,11 +123,13 @@ impl App {
                         self.document.mark_saved(&path);
                     }
                     self.files.scene_path = Some(path);
+                    self.watch_files();
                     self.go_on(ctx);
                 }
                 Written::Snapshot(path) => {
                     self.toasts.say(format!("snapshot {}", path.display()));
                 }
+                Written::Copy => {}
                 Written::Failed(reason) => {
                     self.files.pending = None;
                     self.files.is_saving_first = false;
@@ -245,6 +249,7 @@ impl App {
         self.work.set_assets(Arc::new(assets));
         self.document = Document::new(description, self.files.scene_path.clone());
         self.gesture.next();
+        self.watch_files();
         ctx.send_viewport_cmd(ViewportCommand::Title(format!("{} – Penumbra", self.files.title)));
     }
 
@@ -254,6 +259,51 @@ impl App {
         self.files.is_completing = false;
         self.files.records = loaded.files;
         self.work.set_assets(Arc::new(loaded.assets));
+    }
+
+    /// Takes over what another program made of the open scene. A camera that was moved stays,
+    /// unless the file moved it too. One step of undo.
+    fn take_reloaded(&mut self, loaded: Loaded) {
+        self.files.loading = None;
+        self.files.is_reloading = false;
+        let mut description = loaded.description;
+        let file_camera = description.camera.clone();
+        if file_camera == self.home_camera {
+            description.camera = self.document.description.camera.clone();
+        }
+        self.home_camera = file_camera;
+        self.files.records = loaded.files;
+        self.files.report = loaded.report;
+        self.work.set_assets(Arc::new(loaded.assets));
+        self.document.reload(description);
+        self.watch_files();
+        self.toasts.say("reloaded: the file was changed by another program");
+    }
+
+    /// Loads the open scene again where another program changed one of its files.
+    pub(super) fn reload_if_changed(&mut self) {
+        let is_busy = self.files.loading.is_some();
+        if is_busy || !self.watcher.take_news() {
+            return;
+        }
+        if let Some(source) = self.files.source.clone() {
+            self.files.open(source);
+            self.files.is_reloading = true;
+        }
+    }
+
+    /// Watches the files of the open scene, as they are now.
+    fn watch_files(&self) {
+        let scene = match &self.files.source {
+            Some(Source::File(path)) => Some(path.clone()),
+            Some(Source::Gallery(_)) | None => None,
+        };
+        let used = self
+            .files
+            .records
+            .iter()
+            .filter_map(|record| self.files.folder.disk_path(&record.file));
+        self.watcher.watch(scene.into_iter().chain(used).collect());
     }
 
     /// Loads what the edited scene names and nobody has read yet.

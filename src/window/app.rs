@@ -7,10 +7,12 @@ use super::files::FileWork;
 use super::gesture::Gesture;
 use super::picture::PictureDisplay;
 use super::probe::Probe;
+use super::recovery::Recovery;
 use super::state::{InterfaceState, Remembered};
 use super::swatches::Swatches;
 use super::toasts::Toasts;
 use super::viewport::Click;
+use super::watch::Watcher;
 use super::work::RenderWork;
 use super::{help, keys};
 use crate::document::Document;
@@ -20,6 +22,7 @@ use crate::scene::description::{CameraDescription, SceneDescription};
 use crate::session::Session;
 use crate::threads;
 use egui::Ui;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The whole window.
@@ -40,6 +43,8 @@ pub(super) struct App {
     /// The picture that the live one is compared with.
     pub(super) pinned: Option<Pinned>,
     pub(super) probe: Probe,
+    pub(super) watcher: Watcher,
+    pub(super) recovery: Recovery,
     pub(super) picture: PictureDisplay,
     pub(super) swatches: Swatches,
     pub(super) viewport: ViewportFacts,
@@ -68,6 +73,7 @@ impl App {
         ctx: &egui::Context,
         remembered: Remembered,
         first: Source,
+        own_folder: Option<PathBuf>,
     ) -> std::io::Result<Self> {
         let wake = || {
             let ctx = ctx.clone();
@@ -91,6 +97,8 @@ impl App {
             snapshot_wanted: false,
             pinned: None,
             probe: Probe::default(),
+            watcher: Watcher::new(wake())?,
+            recovery: Recovery::new(own_folder),
             gesture: Gesture::default(),
             picture: PictureDisplay::new(wake())?,
             swatches: Swatches::new(wake())?,
@@ -156,6 +164,8 @@ impl App {
     /// Takes what other threads have finished; also while the window is hidden.
     pub(super) fn take_news(&mut self, ctx: &egui::Context) {
         self.take_results(ctx);
+        self.reload_if_changed();
+        self.keep_copy(ctx);
         self.guard_close(ctx);
     }
 
@@ -174,6 +184,7 @@ impl App {
         if self.interface.help_shown {
             help::help_ui(&ctx, &mut self.interface.help_shown);
         }
+        self.offer_copy(&ctx);
         self.ask_for_paths(&ctx);
         self.ask_about_unsaved(&ctx);
         let foot = self.viewport.rect.center_bottom() - egui::Vec2::new(0.0, 16.0);
@@ -188,6 +199,10 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         self.frame_ui(ui);
+    }
+
+    fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
+        self.recovery.forget();
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {

@@ -130,7 +130,7 @@ fn differences(then: &SceneDescription, now: &SceneDescription) -> Vec<String> {
     for (path, value) in &now {
         match find(&then, path) {
             Some(before) if before == *value => {}
-            Some(before) => lines.push(format!("{path}: {before} → {value}")),
+            Some(before) => lines.push(format!("{path}: {before}, now {value}")),
             None => lines.push(format!("{path}: new, {value}")),
         }
     }
@@ -154,7 +154,7 @@ mod tests {
         let lines = differences(&then, &now);
         assert_eq!(
             lines,
-            ["camera.vertical_fov: 40.0 → 55.0", "materials.glaze.alpha_x: 0.15 → 0.5"],
+            ["camera.vertical_fov: 40.0, now 55.0", "materials.glaze.alpha_x: 0.15, now 0.5"],
             "other lines"
         );
     }

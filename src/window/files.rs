@@ -28,6 +28,8 @@ pub(super) struct FileWork {
     pub(super) source: Option<Source>,
     /// Whether what is being loaded completes an edited scene.
     pub(super) is_completing: bool,
+    /// Whether what is being loaded is the open scene again, changed by another program.
+    pub(super) is_reloading: bool,
     /// What an edited scene lacked when it was last looked at.
     pub(super) missing: Option<ResolveError>,
     /// Whether a scene has been opened at all.
@@ -63,6 +65,8 @@ pub(super) enum Written {
     },
     /// The picture is in that file.
     Snapshot(PathBuf),
+    /// A copy is kept in case of a crash.
+    Copy,
     /// Nothing was written, for that reason.
     Failed(String),
 }
@@ -81,6 +85,7 @@ impl FileWork {
             loading: None,
             source: None,
             is_completing: false,
+            is_reloading: false,
             missing: None,
             has_scene: false,
             is_saving_first: false,
@@ -94,6 +99,7 @@ impl FileWork {
     /// Starts loading; the scene that is open stays until the new one is ready.
     pub(super) fn open(&mut self, source: Source) {
         self.is_completing = false;
+        self.is_reloading = false;
         self.loading = Some(source.stem());
         self.loader.open(source);
     }

@@ -23,6 +23,7 @@ mod panels;
 mod picture;
 mod presets;
 mod probe;
+mod recovery;
 mod relocate;
 mod state;
 mod status;
@@ -32,12 +33,15 @@ mod theme;
 mod toasts;
 mod toolbar;
 mod viewport;
+mod watch;
 mod widgets;
 mod work;
 
 use crate::loader::Source;
 use std::path::PathBuf;
 
+/// Names the program to the system, and its folder.
+const APP_ID: &str = "penumbra";
 /// The gallery scene that opens where no file is named.
 const FIRST_SCENE: &str = "final";
 
@@ -62,7 +66,7 @@ pub fn run(file: Option<PathBuf>) -> Result<(), WindowError> {
     let options = eframe::NativeOptions {
         renderer: eframe::Renderer::Glow,
         viewport: egui::ViewportBuilder::default()
-            .with_app_id("penumbra")
+            .with_app_id(APP_ID)
             .with_title("Penumbra")
             .with_inner_size([1280.0, 800.0])
             .with_min_inner_size([800.0, 520.0])
@@ -77,9 +81,9 @@ pub fn run(file: Option<PathBuf>) -> Result<(), WindowError> {
             .storage
             .and_then(|storage| eframe::get_value(storage, state::Remembered::KEY))
             .unwrap_or_default();
-        Ok(Box::new(app::App::new(&cc.egui_ctx, remembered, first)?))
+        Ok(Box::new(app::App::new(&cc.egui_ctx, remembered, first, eframe::storage_dir(APP_ID))?))
     });
-    eframe::run_native("penumbra", options, create)
+    eframe::run_native(APP_ID, options, create)
         .map_err(|error| WindowError::NoWindow { reason: error.to_string() })
 }
 

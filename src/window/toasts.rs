@@ -14,6 +14,7 @@ const MOST: usize = 4;
 pub(super) struct Toasts {
     shown: Vec<Toast>,
     n_ever: u64,
+    last_time: f64,
 }
 
 #[derive(Debug)]
@@ -48,7 +49,9 @@ impl Toasts {
 
     /// Shows the messages above `bottom_center` and lets time pass for them.
     pub(super) fn show(&mut self, ctx: &egui::Context, bottom_center: egui::Pos2) {
-        let passed = Duration::from_secs_f32(ctx.input(|input| input.stable_dt).min(0.25));
+        let now = ctx.input(|input| input.time);
+        let passed = Duration::from_secs_f64((now - self.last_time).clamp(0.0, 1.0));
+        self.last_time = now;
         let mut closed = Vec::new();
         let mut above = 0.0;
         for toast in self.shown.iter_mut().rev() {

@@ -8,11 +8,11 @@ use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use std::io::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// A scene file that renders in no time.
-pub(super) fn scene_file(folder: &Path) -> std::path::PathBuf {
+pub(super) fn scene_file(folder: &Path) -> PathBuf {
     let path = folder.join("small.toml");
     let mut scene = super::small_scene();
     scene.render.samples = 4;
@@ -23,9 +23,14 @@ pub(super) fn scene_file(folder: &Path) -> std::path::PathBuf {
 
 /// A window of that size on a scene, once it is loaded.
 pub(super) fn window(path: &Path, size: [f32; 2]) -> Harness<'static, App> {
+    window_with(path, size, None)
+}
+
+/// The same with a folder for what the program keeps for itself.
+fn window_with(path: &Path, size: [f32; 2], own: Option<PathBuf>) -> Harness<'static, App> {
     let source = Source::File(path.to_owned());
     let ctx = egui::Context::default();
-    let app = App::new(&ctx, Remembered::default(), source).expect("the threads start");
+    let app = App::new(&ctx, Remembered::default(), source, own).expect("the threads start");
     let mut installed = false;
     let frame = move |ui: &mut egui::Ui, app: &mut App| {
         if !std::mem::replace(&mut installed, true) {
@@ -130,4 +135,43 @@ fn done_means_no_more_frames_are_asked_for() {
     harness.run_steps(40);
     let frames = harness.try_run();
     assert!(frames.is_ok(), "the window keeps repainting: {frames:?}");
+}
+
+#[test]
+fn a_scene_changed_by_another_program_reloads_and_can_be_undone() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene_file(folder.path());
+    let mut harness = window(&path, [1024.0, 700.0]);
+    let before = harness.state().document.description.clone();
+    let mut changed = before.clone();
+    changed.lights[0].power = [7.0; 3];
+    changed.render.samples = 123;
+    std::fs::write(&path, crate::io::scene_file::write(&changed)).unwrap();
+    wait_until(&mut harness, |app| app.document.description.lights[0].power == [7.0; 3]);
+    assert!(!harness.state().document.is_dirty(), "what the file holds counts as unsaved");
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    assert_eq!(harness.state().document.description, before, "the reload cannot be undone");
+}
+
+#[test]
+fn unsaved_edits_survive_a_crash() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene_file(folder.path());
+    let own = folder.path().join("own");
+    std::fs::create_dir(&own).unwrap();
+    let edited = {
+        let mut harness = window_with(&path, [1024.0, 700.0], Some(own.clone()));
+        harness.key_press(egui::Key::D);
+        harness.run_steps(3);
+        harness.run_steps(80);
+        wait_until(&mut harness, |_| own.join("recovery.png").is_file());
+        harness.state().document.description.clone()
+    };
+    let mut harness = window_with(&path, [1024.0, 700.0], Some(own));
+    assert_ne!(harness.state().document.description, edited, "the file was saved");
+    harness.get_by_role_and_label(Role::Button, "Restore it").click();
+    wait_until(&mut harness, |app| app.files.title == "recovery");
+    let restored = &harness.state().document.description;
+    assert_eq!(*restored, edited, "the edits were lost");
 }
