@@ -29,6 +29,11 @@ impl TracedMesh {
         Self { mesh, bounds, trees: Default::default() }
     }
 
+    /// Seconds that a build of that kind takes now, whether one is there or not: for measurements.
+    pub fn time_build(&self, kind: AcceleratorKind) -> f64 {
+        MeshTree::build(&self.mesh, kind).build_secs
+    }
+
     /// The tree of that kind, built now if it is the first time it is asked for.
     pub fn tree(&self, kind: AcceleratorKind) -> &MeshTree {
         self.trees[kind as usize].get_or_init(|| MeshTree::build(&self.mesh, kind))
