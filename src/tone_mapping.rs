@@ -5,9 +5,17 @@
 
 use std::sync::OnceLock;
 
-use crate::color::linear_from_srgb;
+use crate::color::{Picture, linear_from_srgb};
 use crate::math::{approx, portable};
-use crate::scene::description::ToneOperator;
+use crate::scene::description::{ToneMappingDescription, ToneOperator};
+
+/// A picture as a display shows it: sRGB bytes, row by row, three a pixel.
+pub fn srgb_bytes(picture: &Picture, tone_mapping: &ToneMappingDescription) -> Vec<u8> {
+    let mut out = vec![[0_u8; 3]; picture.pixels.len()];
+    let exposure_ev = tone_mapping.exposure as f32;
+    map_to_srgb8(&picture.pixels, exposure_ev, tone_mapping.operator, &mut out);
+    out.into_flattened()
+}
 
 /// Maps linear pixels to sRGB bytes. `exposure_ev` is in stops; `out` has the length of `pixels`.
 pub fn map_to_srgb8(

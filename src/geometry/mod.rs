@@ -5,6 +5,7 @@
 //! light gets through where some objects are clear ([`Geometry::transmittance`]). Every accelerator
 //! gives the same answers to the last bit: of equal distances the lowest primitive wins.
 
+mod extent;
 mod instance;
 pub mod kd_tree;
 mod lanes;
