@@ -36,6 +36,15 @@ impl Instance {
         self.bounds
     }
 
+    /// Around everything that a ray of the world may be found to meet: a mesh is met in object
+    /// space, where the ray's origin is rounded in proportion to the distance of the two origins.
+    pub(super) fn reach(&self) -> Option<Aabb> {
+        const UNIT: f64 = 16.0 / 16_777_216.0;
+        let shift = self.transform.world_from_object_point(DVec3::ZERO).abs().max_element();
+        let pad = Vec3::splat((shift * UNIT) as f32);
+        self.bounds.map(|bounds| Aabb { min: bounds.min - pad, max: bounds.max + pad })
+    }
+
     /// Takes the nearest hit of a ray of the world into `nearest`.
     pub(super) fn intersect(
         &self,

@@ -104,10 +104,10 @@ impl Geometry {
         };
         let tree = match split {
             Some(split) if bounded.len() > TREE_LIMIT => {
-                let item = |id: u32| Some(Item { id, bounds: instances[id as usize].bounds()? });
+                let item = |id: u32| Some(Item { id, bounds: instances[id as usize].reach()? });
                 let items = bounded.into_iter().filter_map(item).collect();
                 Some(kd_tree::build(items, split, &|id, cell: Aabb| {
-                    instances[id as usize].bounds().unwrap_or(cell).intersection(cell)
+                    instances[id as usize].reach().unwrap_or(cell).intersection(cell)
                 }))
             }
             _ => {
