@@ -329,9 +329,8 @@ mod tests {
 
     #[test]
     fn a_thousand_equal_triangles_make_a_tree_of_bounded_depth() {
-        let mut mesh = Mesh::default();
-        mesh.positions = vec![Vec3::X, Vec3::Y, Vec3::Z];
-        mesh.triangles = vec![[0, 1, 2]; 20_000];
+        let positions = vec![Vec3::X, Vec3::Y, Vec3::Z];
+        let mesh = Mesh { positions, triangles: vec![[0, 1, 2]; 20_000], ..Mesh::default() };
         let bvh = WideBvh::build(&mesh);
         let ray = Ray::new(Vec3::ZERO, Vec3::ONE);
         let mut nearest = Nearest::new(&ray);

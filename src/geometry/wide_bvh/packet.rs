@@ -276,8 +276,8 @@ impl<I: Isa> Packet<I> {
         for axis in 0..3 {
             let k = self.order[axis];
             origin[axis] = self.origin[k];
-            for corner in 0..3 {
-                corners[corner][axis] = I::F16::splat(block.corners[corner][k][lane]);
+            for (to, from) in corners.iter_mut().zip(&block.corners) {
+                to[axis] = I::F16::splat(from[k][lane]);
             }
         }
         let [a, b, c] = corners;

@@ -178,8 +178,8 @@ fn triangles<I: Isa>(block: &Block, ray: &Ray, axes: &Axes) -> (u32, I::F4) {
         let k = axes.order[axis];
         origin[axis] = I::F4::splat(ray.origin[k]);
         shear[axis] = I::F4::splat(axes.shear[axis]);
-        for corner in 0..3 {
-            corners[corner][axis] = I::F4::load(&block.corners[corner][k]);
+        for (to, from) in corners.iter_mut().zip(&block.corners) {
+            to[axis] = I::F4::load(&from[k]);
         }
     }
     let [a, b, c] = corners;
