@@ -6,7 +6,10 @@ use clap::Parser;
 use penumbra::cli::{self, Arguments};
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return cli::explain(&error),
+    };
     match &arguments.command {
         Some(command) => cli::run(command),
         None => open_window(arguments),
@@ -20,7 +23,12 @@ fn open_window(_: Arguments) -> ExitCode {
 }
 
 #[cfg(feature = "window")]
-fn open_window(_: Arguments) -> ExitCode {
-    eprintln!("error: this build has no window; use `penumbra render FILE -o OUT`");
-    ExitCode::FAILURE
+fn open_window(arguments: Arguments) -> ExitCode {
+    match penumbra::window::run(arguments.file) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
 }
