@@ -15,6 +15,7 @@ mod files;
 mod gesture;
 mod handles;
 mod help;
+mod incoming;
 mod keys;
 mod layout;
 mod navigation;
