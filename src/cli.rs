@@ -1,8 +1,10 @@
 //! The command line: `render`, `info` and `verify`, without a window.
 
+use std::io::{Write, stderr, stdout};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use anyhow::Context;
 use clap::{Args, Parser, Subcommand};
 
 use crate::geometry::AcceleratorKind;
@@ -131,27 +133,50 @@ pub fn run(command: &Command) -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Usage(message)) => {
-            eprintln!("error: {message}");
+            tell("error", &message);
             ExitCode::from(2)
         }
         Err(Failure::Other(error)) => {
-            eprintln!("error: {error:#}");
+            tell("error", &format!("{error:#}"));
             ExitCode::FAILURE
         }
         Err(Failure::Different) => ExitCode::FAILURE,
     }
 }
 
-/// The one place that prints results.
-#[expect(clippy::print_stdout, reason = "results of commands belong on stdout")]
-fn print(line: &str) {
-    println!("{line}");
+/// Shows what is wrong with a command line, or the help that it asks for. What it repeats of the
+/// command line cannot reach the terminal as an escape sequence.
+pub fn explain(error: &clap::Error) -> ExitCode {
+    let text = error.to_string();
+    let is_unsafe = |c: char| c.is_control() && c != '\n';
+    if text.contains(is_unsafe) {
+        let escaped =
+            |c: char| if is_unsafe(c) { c.escape_debug().collect() } else { c.to_string() };
+        let safe: String = text.chars().map(escaped).collect();
+        // Nobody is left to be told.
+        let _ = stderr().write_all(safe.as_bytes());
+    } else {
+        let _ = error.print();
+    }
+    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+}
+
+/// The one place that prints results; a result that reaches nobody is an error.
+fn print(text: &str) -> anyhow::Result<()> {
+    let mut out = stdout().lock();
+    writeln!(out, "{text}").and_then(|()| out.flush()).context("the standard output")
+}
+
+/// The one place that prints anything else.
+fn tell(kind: &str, message: &str) {
+    // Where stderr is closed, nobody is left to be told.
+    let _ = writeln!(stderr(), "{kind}: {message}");
 }
 
 fn warn(lines: &[String], is_quiet: bool) {
     if !is_quiet {
         for line in lines {
-            eprintln!("warning: {line}");
+            tell("warning", line);
         }
     }
 }

@@ -1,11 +1,20 @@
-//! Linear RGB with Rec. 709 primaries, and the way to sRGB and back.
+//! Linear RGB with Rec. 709 primaries, pictures of it, and the way to sRGB and back.
 
 use glam::Vec3;
 
-use crate::math::portable;
-
 /// Linear light in three channels: reflectance, radiance or power.
 pub type Rgb = Vec3;
+
+/// A linear picture, row 0 at the top.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Picture {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// `width * height` linear colours, row by row.
+    pub pixels: Vec<[f32; 3]>,
+}
 
 /// Relative luminance of linear RGB (Rec. 709).
 #[inline]
@@ -13,14 +22,14 @@ pub fn luminance(c: Rgb) -> f32 {
     0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z
 }
 
-/// sRGB transfer function, IEC 61966-2-1: linear 0..=1 to encoded 0..=1.
+/// sRGB transfer function, the same bits on every machine, IEC 61966-2-1: linear 0..=1 to encoded 0..=1.
 pub fn srgb_from_linear(x: f32) -> f32 {
-    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * portable::pow(x, 1.0 / 2.4) - 0.055 }
+    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * libm::powf(x, 1.0 / 2.4) - 0.055 }
 }
 
 /// Inverse of [`srgb_from_linear`].
 pub fn linear_from_srgb(x: f32) -> f32 {
-    if x <= 0.040_45 { x / 12.92 } else { portable::pow((x + 0.055) / 1.055, 2.4) }
+    if x <= 0.040_45 { x / 12.92 } else { libm::powf((x + 0.055) / 1.055, 2.4) }
 }
 
 #[cfg(test)]

@@ -3,25 +3,24 @@
 //! [`load`] does the work where it is called; [`Loader`] does it on a thread of its own, the newest
 //! request first, and can be cancelled.
 
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
-use crate::geometry::TracedMesh;
 use crate::io::files::{FileError, read_file};
 use crate::io::folder::{FileRecord, Folder, LARGEST_ASSET};
-use crate::io::obj::{self, ObjError};
+use crate::io::obj::ObjError;
 use crate::io::scene_file::{self, Override, OverrideError, SceneFileError, Section};
 use crate::io::snapshot::{self, RenderRecord, SnapshotError};
-use crate::io::{excerpt, gallery, image_file, mtl, printable_path};
-use crate::scene::assets::{Assets, MeshAsset, MeshKey, SlotMaterial};
-use crate::scene::description::{ObjectKind, SceneDescription, TextureKind};
-use crate::scene::image::Image;
+use crate::io::{gallery, printable_path};
+use crate::scene::assets::{Assets, MeshAsset, MeshKey};
+use crate::scene::description::SceneDescription;
 
 mod framing;
+mod reading;
 mod worker;
 
+use reading::{AssetFailure, Reading};
 pub use worker::{LoadProgress, Loader};
 
 /// What is opened.
@@ -103,6 +102,9 @@ pub enum LoadError {
     /// An edited scene names a file that cannot be used.
     #[error("{0}")]
     Edit(String),
+    /// The loader itself failed; the next file is loaded as if nothing had been.
+    #[error("loading failed: {0}; this is a mistake in penumbra")]
+    Failed(String),
     /// The request was cancelled or replaced by a newer one.
     #[error("cancelled")]
     Cancelled,
@@ -194,14 +196,16 @@ impl Opened {
         };
         let name = printable_path(path);
         let bytes = read_file(path, LARGEST_ASSET)?;
-        if bytes.starts_with(b"\x89PNG") {
+        let has_ending =
+            |ending| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending));
+        if bytes.starts_with(b"\x89PNG") || has_ending("png") {
             let snapshot = snapshot::read(&bytes, path)
                 .map_err(|error| LoadError::Snapshot { name: name.clone(), error })?;
             let mut opened = Self::scene(name, snapshot.scene, snapshot.folder);
             opened.snapshot = Some(snapshot.record);
             return Ok(opened);
         }
-        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
+        if has_ending("obj") {
             return Self::mesh(name, path, &bytes);
         }
         let text = scene_file::text_of(bytes)
@@ -240,123 +244,5 @@ impl Opened {
         opened.mesh_files = reading.records;
         opened.report = reading.report;
         Ok(opened)
-    }
-}
-
-/// The files of one scene on their way in; each is read once.
-struct Reading<'a> {
-    folder: &'a Folder,
-    is_cancelled: &'a AtomicBool,
-    assets: Assets,
-    records: Vec<FileRecord>,
-    report: Vec<String>,
-}
-
-enum AssetFailure {
-    Cancelled,
-    Broken { section: Section, index: usize, message: String },
-}
-
-impl<'a> Reading<'a> {
-    fn new(folder: &'a Folder, is_cancelled: &'a AtomicBool) -> Self {
-        Self {
-            folder,
-            is_cancelled,
-            assets: Assets { meshes: HashMap::new(), images: HashMap::new() },
-            records: Vec::new(),
-            report: Vec::new(),
-        }
-    }
-
-    /// Everything that a description names, disabled objects and unused textures too.
-    fn all_of(&mut self, description: &SceneDescription) -> Result<(), AssetFailure> {
-        for (index, object) in description.objects.iter().enumerate() {
-            self.check_cancelled()?;
-            let ObjectKind::Mesh = object.kind else { continue };
-            let Some(key) = MeshKey::of(object) else { continue };
-            if self.assets.meshes.contains_key(&key) {
-                continue;
-            }
-            let broken =
-                |message| AssetFailure::Broken { section: Section::Objects, index, message };
-            let bytes = self.read(&key.file).map_err(|error| broken(error.to_string()))?;
-            let label = excerpt(key.file.as_bytes());
-            let asset =
-                self.mesh_of(&key, &bytes).map_err(|error| broken(format!("{label}: {error}")))?;
-            self.assets.meshes.insert(key, Arc::new(asset));
-        }
-        for (index, texture) in description.textures.iter().enumerate() {
-            self.check_cancelled()?;
-            let (TextureKind::Image, Some(file)) = (texture.kind, &texture.file) else { continue };
-            if self.assets.images.contains_key(file) {
-                continue;
-            }
-            let image = self.image(file).map_err(|message| AssetFailure::Broken {
-                section: Section::Textures,
-                index,
-                message,
-            })?;
-            self.assets.images.insert(file.clone(), Arc::new(image));
-        }
-        Ok(())
-    }
-
-    fn check_cancelled(&self) -> Result<(), AssetFailure> {
-        if self.is_cancelled.load(Ordering::Relaxed) {
-            return Err(AssetFailure::Cancelled);
-        }
-        Ok(())
-    }
-
-    fn read(&mut self, file: &str) -> Result<Vec<u8>, FileError> {
-        let bytes = self.folder.read(file)?;
-        if !self.records.iter().any(|record| record.file == file) {
-            self.records.push(FileRecord::of(file, &bytes));
-        }
-        Ok(bytes)
-    }
-
-    fn image(&mut self, file: &str) -> Result<Image, String> {
-        let bytes = self.read(file).map_err(|error| error.to_string())?;
-        image_file::decode(&bytes).map_err(|error| format!("{}: {error}", excerpt(file.as_bytes())))
-    }
-
-    /// The mesh with its libraries' materials; whatever is wrong with those is reported only.
-    fn mesh_of(&mut self, key: &MeshKey, bytes: &[u8]) -> Result<MeshAsset, ObjError> {
-        let (mesh, notes) = obj::load_mesh(bytes, key.normals, key.crease_angle_deg())?;
-        let label = excerpt(key.file.as_bytes());
-        let beside = Path::new(&key.file).parent().unwrap_or(Path::new("")).to_owned();
-        let named = |path: &Path| beside.join(path).to_string_lossy().into_owned();
-        let (materials, warnings) =
-            mtl::materials_of_slots(&notes.slot_names, &notes.libraries, |path| {
-                self.read(&named(path)).map_err(|error| error.reason().to_owned())
-            });
-        let told = notes.warnings.into_iter().chain(warnings);
-        self.report.extend(told.map(|warning| format!("{label}: {warning}")));
-        let mut maps: HashMap<String, Option<Arc<Image>>> = HashMap::new();
-        let mut slots = Vec::with_capacity(materials.len());
-        for material in materials {
-            let Some(material) = material else {
-                slots.push(None);
-                continue;
-            };
-            let diffuse_map = material.diffuse_map.and_then(|map| {
-                let file = named(Path::new(&map));
-                if !maps.contains_key(&file) {
-                    let image = self.image(&file);
-                    if let Err(reason) = &image {
-                        self.report.push(format!("{label}: map_Kd {reason}"));
-                    }
-                    maps.insert(file.clone(), image.ok().map(Arc::new));
-                }
-                maps.get(&file).cloned().flatten()
-            });
-            slots.push(Some(SlotMaterial { description: material.description, diffuse_map }));
-        }
-        let has_map = slots.iter().flatten().any(|slot| slot.diffuse_map.is_some());
-        if mesh.uvs.is_empty() && has_map {
-            self.report.push(format!("{label}: has no texture coordinates; (0, 0) is used"));
-        }
-        Ok(MeshAsset { traced: Arc::new(TracedMesh::new(mesh)), slots })
     }
 }

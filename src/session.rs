@@ -10,13 +10,15 @@
 mod driver;
 mod renderer;
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
+use crate::color::Picture;
 use crate::geometry::TreeStatistics;
-use crate::render::{Pick, Picture, RenderJob};
+use crate::render::{Pick, RenderJob};
 use crate::threads;
 
 pub use renderer::{PoolRenderer, Renderer};
@@ -319,7 +321,9 @@ fn answer<R: Renderer>(
         }
         let world = lock(world).clone();
         let (x, y) = request;
-        let pick = world.and_then(|world| renderer.pick(&world, x, y));
+        // A panic is the answer to one question only.
+        let pick = AssertUnwindSafe(|| world.and_then(|world| renderer.pick(&world, x, y)));
+        let pick = catch_unwind(pick).unwrap_or(None);
         *lock(&shared.picked) = Some(Picked { x, y, pick });
         shared.wake();
     }

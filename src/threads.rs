@@ -1,5 +1,6 @@
 //! The one way to start threads: named, and in pools of their own.
 
+use std::any::Any;
 use std::io;
 use std::thread::{Builder, JoinHandle};
 
@@ -43,6 +44,13 @@ fn lower_priority() {
         // Rendering at normal priority is no failure.
         let _ = rustix::process::nice(5);
     }
+}
+
+/// What a panic said.
+pub fn panic_text(panic: &(dyn Any + Send)) -> String {
+    let owned = panic.downcast_ref::<String>().cloned();
+    let text = || panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    owned.or_else(text).unwrap_or_else(|| "an unknown failure".to_owned())
 }
 
 /// Processors that this process may use, at least 1.

@@ -1,5 +1,6 @@
 //! `penumbra info`: what a scene or mesh holds.
 
+use glam::Vec3;
 use serde_json::json;
 
 use crate::cli::render::{open, world_of};
@@ -18,9 +19,9 @@ pub(super) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
     let tree = world.geometry.statistics();
     let name = AcceleratorKind::default().name();
     let build_ms = tree.build_secs * 1e3;
-    let bounds = world.geometry.bounds();
+    let bounds = world.geometry.extent().map(|corners| corners.map(|p| p.as_vec3()));
     if arguments.json {
-        let bounds = bounds.map(|b| json!({ "min": b.min.to_array(), "max": b.max.to_array() }));
+        let bounds = bounds.map(|[min, max]| json!({ "min": shortest(min), "max": shortest(max) }));
         let info = json!({
             "vertices": counts.vertices,
             "triangles": counts.triangles,
@@ -35,25 +36,27 @@ pub(super) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
                 "bytes": tree.n_bytes,
             },
         });
-        print(&info.to_string());
-        return Ok(());
+        return Ok(print(&info.to_string())?);
     }
     let Counts { vertices, triangles, materials, objects, lights } = counts;
-    print(&format!("vertices     {vertices}"));
-    print(&format!("triangles    {triangles}"));
-    print(&format!("materials    {materials}"));
-    print(&format!("objects      {objects}"));
-    print(&format!("lights       {lights}"));
-    match bounds {
-        Some(b) => print(&format!("bounds       {} to {}", b.min, b.max)),
-        None => print("bounds       none"),
-    }
+    let bounds = bounds.map_or("none".to_owned(), |b| format!("{} to {}", b[0], b[1]));
     print(&format!(
-        "accelerator  {name}: {build_ms:.1} ms, {} nodes, {} KiB",
+        "vertices     {vertices}\n\
+         triangles    {triangles}\n\
+         materials    {materials}\n\
+         objects      {objects}\n\
+         lights       {lights}\n\
+         bounds       {bounds}\n\
+         accelerator  {name}: {build_ms:.1} ms, {} nodes, {} KiB",
         tree.n_nodes,
         tree.n_bytes >> 10
-    ));
+    ))?;
     Ok(())
+}
+
+/// The numbers with no more digits than tell them apart, as files have them.
+fn shortest(point: Vec3) -> [f64; 3] {
+    point.to_array().map(|x| x.to_string().parse().unwrap_or(f64::from(x)))
 }
 
 /// How much of everything; what is disabled is not there.

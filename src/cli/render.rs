@@ -9,21 +9,27 @@ use anyhow::{Context, bail};
 
 use crate::cli::progress::Progress;
 use crate::cli::{Failure, RenderArguments, print, warn};
+use crate::color::Picture;
 use crate::geometry::AcceleratorKind;
-use crate::io::output::{OutputFormat, encode, replace_file};
+use crate::io::output::{
+    OutputFormat, TextChunk, WriteError, encode_exr, encode_hdr, encode_png, replace_file,
+};
+use crate::io::printable_path;
 use crate::io::scene_file::Override;
 use crate::io::snapshot;
 use crate::loader::{LoadError, Loaded, Source, load};
 use crate::render::{Film, RenderJob, RenderSettings, World, plan, render_pass};
+use crate::scene::description::ToneMappingDescription;
 use crate::scene::resolve;
 use crate::threads;
+use crate::tone_mapping::srgb_bytes;
 
 pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     let output = &arguments.output;
     let Some(format) = OutputFormat::of(output) else {
         return Err(Failure::Usage(format!(
             "--output {}: unknown ending; give a name that ends in .png, .exr or .hdr",
-            output.display()
+            printable_path(output)
         )));
     };
     check_folder(output)?;
@@ -36,8 +42,9 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     let mut world = world_of(&loaded, arguments.accelerator, &pool)?;
     let mut progress = Progress::new(u64::from(goal), arguments.quiet);
     let limits = Limits { samples: goal, seconds: arguments.time, noise: arguments.noise };
-    let film = develop(&mut world, &pool, limits, start, |film| progress.show(film))?;
+    let (film, n_invalid) = develop(&mut world, &pool, limits, start, |film| progress.show(film))?;
     progress.finish();
+    warn(&not_finite(n_invalid), arguments.quiet);
     let seconds = start.elapsed().as_secs_f64();
     let size = (film.width(), film.height());
     let texts = snapshot::texts(&loaded.description, size, film.n_samples(), &loaded.files, None)?;
@@ -53,7 +60,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
             "seconds": seconds,
             "noise_percent": film.noise_percent(),
         });
-        print(&summary.to_string());
+        print(&summary.to_string())?;
     }
     Ok(())
 }
@@ -92,14 +99,15 @@ pub(super) fn world_of(
     Ok(pool.install(|| World::new(job)))
 }
 
-/// Passes until a limit is reached; `after_pass` is shown the film after each.
+/// Passes until a limit is reached; `after_pass` is shown the film after each. Gives the film, and
+/// how many samples were not finite.
 pub(super) fn develop(
     world: &mut World,
     pool: &rayon::ThreadPool,
     limits: Limits,
     start: Instant,
     mut after_pass: impl FnMut(&Film),
-) -> anyhow::Result<Film> {
+) -> anyhow::Result<(Film, u64)> {
     /// With fewer samples the estimate of the noise is not to be trusted.
     const LEAST_FOR_NOISE: u32 = 8;
     let never = AtomicBool::new(false);
@@ -126,10 +134,31 @@ pub(super) fn develop(
             break;
         }
     }
-    if n_invalid > 0 {
-        eprintln!("warning: {n_invalid} samples were not finite and counted as black");
+    Ok((film, n_invalid))
+}
+
+/// A warning where any samples were not finite.
+pub(super) fn not_finite(n_invalid: u64) -> Vec<String> {
+    let warning = || format!("{n_invalid} samples were not finite and counted as black");
+    (n_invalid > 0).then(warning).into_iter().collect()
+}
+
+fn encode(
+    path: &Path,
+    format: OutputFormat,
+    picture: &Picture,
+    tone_mapping: &ToneMappingDescription,
+    texts: &[TextChunk],
+) -> Result<Vec<u8>, WriteError> {
+    let error = |error: &dyn std::fmt::Display| WriteError::new(path, error);
+    match format {
+        OutputFormat::Png => {
+            let srgb = srgb_bytes(picture, tone_mapping);
+            encode_png((picture.width, picture.height), &srgb, texts).map_err(|e| error(&e))
+        }
+        OutputFormat::Exr => encode_exr(picture).map_err(|e| error(&e)),
+        OutputFormat::Hdr => encode_hdr(picture).map_err(|e| error(&e)),
     }
-    Ok(film)
 }
 
 /// `--set` first, then the options of their own, which win.
@@ -154,9 +183,9 @@ fn check_folder(output: &Path) -> anyhow::Result<()> {
     let folder = output.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
     let metadata = std::fs::metadata(folder)
-        .with_context(|| format!("{}: the folder of the output", folder.display()))?;
+        .with_context(|| format!("{}: the folder of the output", printable_path(folder)))?;
     if !metadata.is_dir() || output.is_dir() {
-        bail!("{}: is no place for a file", output.display());
+        bail!("{}: is no place for a file", printable_path(output));
     }
     Ok(())
 }

@@ -5,8 +5,10 @@
 //! light gets through where some objects are clear ([`Geometry::transmittance`]). Every accelerator
 //! gives the same answers to the last bit: of equal distances the lowest primitive wins.
 
+mod extent;
 mod instance;
 pub mod kd_tree;
+mod lanes;
 pub mod mesh;
 mod mesh_tree;
 mod nearest;
@@ -14,6 +16,7 @@ pub mod normals;
 mod shape;
 mod surface;
 mod triangle;
+mod wide_bvh;
 
 use crate::color::Rgb;
 use crate::geometry::kd_tree::{Item, KdTree, Split, Walk};
@@ -28,8 +31,10 @@ pub use surface::Surface;
 /// How rays find what they meet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum AcceleratorKind {
-    /// kd-tree built by the surface area heuristic.
+    /// Bounding volumes, eight to a node, for wide registers.
     #[default]
+    WideBvh,
+    /// kd-tree built by the surface area heuristic.
     KdTree,
     /// kd-tree cut at the middle of the longest side.
     KdMidpoint,
@@ -39,11 +44,12 @@ pub enum AcceleratorKind {
 
 impl AcceleratorKind {
     /// All kinds.
-    pub const ALL: [Self; 3] = [Self::KdTree, Self::KdMidpoint, Self::BruteForce];
+    pub const ALL: [Self; 4] = [Self::WideBvh, Self::KdTree, Self::KdMidpoint, Self::BruteForce];
 
     /// The name on the command line.
     pub fn name(self) -> &'static str {
         match self {
+            Self::WideBvh => "wide-bvh",
             Self::KdTree => "kd-tree",
             Self::KdMidpoint => "kd-midpoint",
             Self::BruteForce => "brute-force",
@@ -92,16 +98,16 @@ impl Geometry {
         let (bounded, mut listed): (Vec<u32>, Vec<u32>) =
             (0..instances.len() as u32).partition(bounded);
         let split = match kind {
-            AcceleratorKind::KdTree => Some(Split::SurfaceArea),
+            AcceleratorKind::WideBvh | AcceleratorKind::KdTree => Some(Split::SurfaceArea),
             AcceleratorKind::KdMidpoint => Some(Split::Midpoint),
             AcceleratorKind::BruteForce => None,
         };
         let tree = match split {
             Some(split) if bounded.len() > TREE_LIMIT => {
-                let item = |id: u32| Some(Item { id, bounds: instances[id as usize].bounds()? });
+                let item = |id: u32| Some(Item { id, bounds: instances[id as usize].reach()? });
                 let items = bounded.into_iter().filter_map(item).collect();
                 Some(kd_tree::build(items, split, &|id, cell: Aabb| {
-                    instances[id as usize].bounds().unwrap_or(cell).intersection(cell)
+                    instances[id as usize].reach().unwrap_or(cell).intersection(cell)
                 }))
             }
             _ => {
@@ -146,14 +152,30 @@ impl Geometry {
 
     /// What each ray meets first; `hits` is overwritten, one entry a ray.
     pub fn intersect(&self, rays: &RayBatch, hits: &mut Vec<Option<Hit>>) {
+        let mut nearest: Vec<Nearest> =
+            (0..rays.len()).map(|i| Nearest::new(&rays.ray(i))).collect();
+        for id in &self.listed {
+            let instance = &self.instances[*id as usize];
+            instance.intersect_batch(rays, *id, self.kind, &mut nearest);
+        }
+        for (index, nearest) in nearest.iter_mut().enumerate() {
+            self.collect_from_tree(&rays.ray(index), |_| true, nearest);
+        }
         hits.clear();
-        hits.extend((0..rays.len()).map(|i| self.intersect_one(&rays.ray(i), |_| true)));
+        hits.extend(nearest.iter().map(Nearest::hit));
     }
 
     /// Whether anything lies between the ends of each ray; `blocked` is overwritten.
     pub fn occluded(&self, rays: &RayBatch, blocked: &mut Vec<bool>) {
         blocked.clear();
-        blocked.extend((0..rays.len()).map(|i| self.occluded_one(&rays.ray(i), |_| true)));
+        blocked.resize(rays.len(), false);
+        for id in &self.listed {
+            let instance = &self.instances[*id as usize];
+            instance.occluded_batch(rays, *id, self.kind, blocked);
+        }
+        for (index, blocked) in blocked.iter_mut().enumerate() {
+            *blocked = *blocked || self.occluded_by_tree(&rays.ray(index), |_| true);
+        }
     }
 
     /// The share of light that passes along each ray where some objects are clear: `clear(object)`
@@ -186,12 +208,6 @@ impl Geometry {
         }));
     }
 
-    fn intersect_one(&self, ray: &Ray, take: impl Fn(u32) -> bool) -> Option<Hit> {
-        let mut nearest = Nearest::new(ray);
-        self.collect(ray, take, &mut nearest);
-        nearest.hit()
-    }
-
     /// The first hit after `after` in the order of distance, then primitive.
     fn next_hit(
         &self,
@@ -208,6 +224,10 @@ impl Geometry {
         for id in self.listed.iter().copied().filter(|id| take(*id)) {
             self.instances[id as usize].intersect(ray, id, self.kind, nearest);
         }
+        self.collect_from_tree(ray, take, nearest);
+    }
+
+    fn collect_from_tree(&self, ray: &Ray, take: impl Fn(u32) -> bool, nearest: &mut Nearest) {
         let Some(tree) = &self.tree else { return };
         let clipped = Ray { t_max: nearest.t(), ..*ray };
         let Some(walk) = Walk::new(&clipped, &tree.bounds) else { return };
@@ -221,9 +241,11 @@ impl Geometry {
 
     fn occluded_one(&self, ray: &Ray, take: impl Fn(u32) -> bool) -> bool {
         let blocks = |id: u32| take(id) && self.instances[id as usize].occluded(ray, id, self.kind);
-        if self.listed.iter().any(|id| blocks(*id)) {
-            return true;
-        }
+        self.listed.iter().any(|id| blocks(*id)) || self.occluded_by_tree(ray, take)
+    }
+
+    fn occluded_by_tree(&self, ray: &Ray, take: impl Fn(u32) -> bool) -> bool {
+        let blocks = |id: u32| take(id) && self.instances[id as usize].occluded(ray, id, self.kind);
         let Some(tree) = &self.tree else { return false };
         let Some(walk) = Walk::new(ray, &tree.bounds) else { return false };
         let mut is_blocked = false;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::io::printable_path;
 
 /// Why a file could not be read. The path is escaped where it is shown.
-#[derive(Debug, thiserror::Error)]
+#[derive(Clone, Debug, thiserror::Error)]
 #[error("{}: {reason}", printable_path(.path))]
 pub struct FileError {
     path: PathBuf,

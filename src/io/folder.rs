@@ -1,5 +1,6 @@
 //! Where the files of a scene are looked for, and a record of what was read.
 
+use std::ffi::OsStr;
 use std::path::{Component, Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -21,7 +22,7 @@ pub enum Folder {
     /// A snapshot's files: each is taken from the first place where it is unchanged.
     Snapshot {
         /// The folder that the scene was opened from, where the snapshot says so.
-        recorded: Option<Box<Folder>>,
+        recorded: Option<Box<Self>>,
         /// The folder of the PNG.
         beside: PathBuf,
         /// What the files were.
@@ -74,6 +75,14 @@ impl Folder {
         }
     }
 
+    /// Whether this is the place of a snapshot that used a file of that name.
+    pub fn has_record_of(&self, file: &str) -> bool {
+        match self {
+            Self::Disk(_) | Self::Gallery => false,
+            Self::Snapshot { files, .. } => files.iter().any(|record| record.file == file),
+        }
+    }
+
     /// Where a file named relative to this folder is on disk, for watching it.
     pub fn disk_path(&self, file: &str) -> Option<PathBuf> {
         match self {
@@ -90,21 +99,16 @@ fn read_unchanged(
     file: &str,
 ) -> Result<Vec<u8>, FileError> {
     let wanted = files.iter().find(|record| record.file == file);
-    let disk = |path: PathBuf| move || read_file(&path, LARGEST_ASSET);
-    let name = Path::new(file).file_name().map_or_else(|| beside.join(file), |n| beside.join(n));
-    let recorded = || match recorded {
-        Some(folder) => folder.read(file),
-        None => Err(FileError::not_found(Path::new(file))),
-    };
-    let places: [Box<dyn Fn() -> Result<Vec<u8>, FileError> + '_>; 4] = [
-        Box::new(recorded),
-        Box::new(disk(beside.join(file))),
-        Box::new(disk(name)),
-        Box::new(|| Folder::Gallery.read(file)),
+    let name = Path::new(file).file_name().and_then(OsStr::to_str).unwrap_or(file);
+    let places = [
+        recorded.map(|folder| (folder.clone(), file)),
+        Some((Folder::Disk(beside.to_owned()), file)),
+        Some((Folder::Disk(beside.to_owned()), name)),
+        Some((Folder::Gallery, file)),
     ];
     let mut is_changed = false;
-    for place in places {
-        let Ok(bytes) = place() else { continue };
+    for (folder, file_there) in places.into_iter().flatten() {
+        let Ok(bytes) = folder.read(file_there) else { continue };
         match wanted {
             Some(record) if *record != FileRecord::of(file, &bytes) => is_changed = true,
             Some(_) | None => return Ok(bytes),

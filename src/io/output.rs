@@ -6,9 +6,8 @@ use std::path::{Path, PathBuf};
 
 use image::{ExtendedColorType, ImageEncoder};
 
-use crate::render::Picture;
-use crate::scene::description::ToneMappingDescription;
-use crate::tone_mapping::map_to_srgb8;
+use crate::color::Picture;
+use crate::io::printable_path;
 
 /// The format of a picture file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,14 +35,15 @@ impl OutputFormat {
 
 /// Why a file could not be written.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: cannot be written: {reason}", .path.display())]
+#[error("{}: cannot be written: {reason}", printable_path(.path))]
 pub struct WriteError {
     path: PathBuf,
     reason: String,
 }
 
 impl WriteError {
-    fn new(path: &Path, reason: impl ToString) -> Self {
+    /// `path` is where it should have gone.
+    pub fn new(path: &Path, reason: impl ToString) -> Self {
         Self { path: path.to_owned(), reason: reason.to_string() }
     }
 
@@ -56,18 +56,17 @@ impl WriteError {
 /// Text that a PNG carries: keyword and UTF-8 text.
 pub type TextChunk = (&'static str, String);
 
-/// The bytes of a PNG: 8-bit sRGB with text chunks.
+/// The bytes of a PNG with text chunks; `srgb` is what the display shows, three bytes a pixel.
 ///
 /// # Errors
 /// When encoding fails.
 pub fn encode_png(
-    picture: &Picture,
-    tone_mapping: &ToneMappingDescription,
+    (width, height): (u32, u32),
+    srgb: &[u8],
     texts: &[TextChunk],
 ) -> Result<Vec<u8>, png::EncodingError> {
-    let rgb = srgb_bytes(picture, tone_mapping);
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, picture.width, picture.height);
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
@@ -75,68 +74,38 @@ pub fn encode_png(
         encoder.add_itxt_chunk((*keyword).to_owned(), text.clone())?;
     }
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&rgb)?;
+    writer.write_image_data(srgb)?;
     writer.finish()?;
     Ok(bytes)
 }
 
-/// The tone-mapped bytes of a picture, row by row, three a pixel.
-pub fn srgb_bytes(picture: &Picture, tone_mapping: &ToneMappingDescription) -> Vec<u8> {
-    let mut out = vec![[0_u8; 3]; picture.pixels.len()];
-    let exposure = tone_mapping.exposure as f32;
-    map_to_srgb8(&picture.pixels, exposure, tone_mapping.operator, &mut out);
-    out.into_flattened()
-}
-
-/// The bytes of an OpenEXR or Radiance file: linear, tone mapping left out.
+/// The bytes of an OpenEXR file: linear, 32-bit float.
 ///
 /// # Errors
 /// When encoding fails.
-pub fn encode_linear(
-    picture: &Picture,
-    format: OutputFormat,
-) -> Result<Vec<u8>, image::ImageError> {
-    let (width, height) = (picture.width, picture.height);
+pub fn encode_exr(picture: &Picture) -> Result<Vec<u8>, image::ImageError> {
     let mut bytes = io::Cursor::new(Vec::new());
-    if format == OutputFormat::Hdr {
-        let pixels: Vec<image::Rgb<f32>> = picture.pixels.iter().map(|p| image::Rgb(*p)).collect();
-        image::codecs::hdr::HdrEncoder::new(&mut bytes).encode(
-            &pixels,
-            width as usize,
-            height as usize,
-        )?;
-    } else {
-        let floats = picture.pixels.as_flattened();
-        let raw: Vec<u8> = floats.iter().flat_map(|x| x.to_ne_bytes()).collect();
-        image::codecs::openexr::OpenExrEncoder::new(&mut bytes).write_image(
-            &raw,
-            width,
-            height,
-            ExtendedColorType::Rgb32F,
-        )?;
-    }
+    let floats = picture.pixels.as_flattened();
+    let raw: Vec<u8> = floats.iter().flat_map(|x| x.to_ne_bytes()).collect();
+    image::codecs::openexr::OpenExrEncoder::new(&mut bytes).write_image(
+        &raw,
+        picture.width,
+        picture.height,
+        ExtendedColorType::Rgb32F,
+    )?;
     Ok(bytes.into_inner())
 }
 
-/// Encodes a picture in a format. `texts` go into PNG only.
+/// The bytes of a Radiance file: linear, 8 bits a channel and a shared exponent.
 ///
 /// # Errors
-/// When encoding fails; `path` is named.
-pub fn encode(
-    path: &Path,
-    format: OutputFormat,
-    picture: &Picture,
-    tone_mapping: &ToneMappingDescription,
-    texts: &[TextChunk],
-) -> Result<Vec<u8>, WriteError> {
-    match format {
-        OutputFormat::Png => {
-            encode_png(picture, tone_mapping, texts).map_err(|error| WriteError::new(path, error))
-        }
-        OutputFormat::Exr | OutputFormat::Hdr => {
-            encode_linear(picture, format).map_err(|error| WriteError::new(path, error))
-        }
-    }
+/// When encoding fails.
+pub fn encode_hdr(picture: &Picture) -> Result<Vec<u8>, image::ImageError> {
+    let mut bytes = Vec::new();
+    let pixels: Vec<image::Rgb<f32>> = picture.pixels.iter().map(|p| image::Rgb(*p)).collect();
+    let (width, height) = (picture.width as usize, picture.height as usize);
+    image::codecs::hdr::HdrEncoder::new(&mut bytes).encode(&pixels, width, height)?;
+    Ok(bytes)
 }
 
 /// Replaces a file by these bytes: temporary file beside it, synced, renamed. Until then the old

@@ -65,6 +65,18 @@ pub enum SnapshotError {
     /// A PNG without a scene.
     #[error("carries no scene; only pictures saved by penumbra do")]
     NoScene,
+    /// The picture is not of the size that its scene says.
+    #[error("the picture is {found_width} x {found_height}, its scene {width} x {height}")]
+    OtherSize {
+        /// Width in pixels.
+        found_width: u32,
+        /// Height in pixels.
+        found_height: u32,
+        /// What it should be.
+        width: u32,
+        /// What it should be.
+        height: u32,
+    },
     /// The record is damaged.
     #[error("carries a damaged record: {0}")]
     Record(String),
@@ -115,7 +127,10 @@ pub fn read(bytes: &[u8], path: &Path) -> Result<Snapshot, SnapshotError> {
     let reader = decoder.read_info()?;
     let text = |keyword: &str| {
         let chunk = reader.info().utf8_text.iter().find(|chunk| chunk.keyword == keyword);
-        chunk.and_then(|chunk| chunk.get_text().ok())
+        let mut chunk = chunk?.clone();
+        // Another program may have compressed it; a small chunk can hold a very large text.
+        chunk.decompress_text_with_limit(LARGEST_TEXT).ok()?;
+        chunk.get_text().ok()
     };
     let scene = text(SCENE).ok_or(SnapshotError::NoScene)?;
     let record = text(RENDER).ok_or(SnapshotError::NoScene)?;
@@ -135,20 +150,29 @@ pub fn read(bytes: &[u8], path: &Path) -> Result<Snapshot, SnapshotError> {
     Ok(Snapshot { scene, record, folder })
 }
 
-/// The 8-bit RGB bytes of a PNG with its width and height.
+/// The 8-bit RGB bytes of a PNG, which has to be of this size.
 ///
 /// # Errors
-/// When it is no such PNG.
-pub fn read_pixels(bytes: &[u8]) -> Result<(u32, u32, Vec<u8>), SnapshotError> {
-    let decoder = png::Decoder::new(std::io::Cursor::new(bytes));
-    let mut reader = decoder.read_info()?;
-    let size = reader.output_buffer_size().unwrap_or(0);
-    let mut pixels = vec![0; size];
-    let info = reader.next_frame(&mut pixels)?;
-    pixels.truncate(info.buffer_size());
+/// When it is no such PNG, or damaged.
+pub fn read_pixels(bytes: &[u8], (width, height): (u32, u32)) -> Result<Vec<u8>, SnapshotError> {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info()?;
+    let info = reader.info();
+    if (info.width, info.height) != (width, height) {
+        let (found_width, found_height) = (info.width, info.height);
+        return Err(SnapshotError::OtherSize { found_width, found_height, width, height });
+    }
     let is_rgb8 = info.color_type == png::ColorType::Rgb && info.bit_depth == png::BitDepth::Eight;
     if !is_rgb8 {
         return Err(SnapshotError::Record("the picture is not 8-bit RGB".to_owned()));
     }
-    Ok((info.width, info.height, pixels))
+    let size = reader.output_buffer_size().unwrap_or(0);
+    let mut pixels = Vec::new();
+    pixels
+        .try_reserve_exact(size)
+        .map_err(|_| SnapshotError::Record("the picture does not fit into memory".to_owned()))?;
+    pixels.resize(size, 0);
+    reader.next_frame(&mut pixels)?;
+    // What follows the pixels tells whether the file is whole.
+    reader.finish()?;
+    Ok(pixels)
 }

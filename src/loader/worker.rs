@@ -1,10 +1,11 @@
 //! Loading in the background: one request at a time, the newest wins.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
-use crate::io::folder::Folder;
+use crate::io::folder::{FileRecord, Folder};
 use crate::loader::{LoadError, Loaded, Source, load, load_missing};
 use crate::scene::Assets;
 use crate::scene::description::SceneDescription;
@@ -142,7 +143,9 @@ impl Shared {
             let stop = Arc::new(AtomicBool::new(false));
             state.current = Some((request.source().clone(), Arc::clone(&stop)));
             drop(state);
-            let result = serve(request, &stop);
+            let served = catch_unwind(AssertUnwindSafe(|| serve(request, &stop)));
+            let result =
+                served.unwrap_or_else(|panic| Err(LoadError::Failed(threads::panic_text(&*panic))));
             let mut state = self.lock();
             // A cancelled or outdated request leaves no trace.
             if !stop.load(Ordering::Relaxed) {
@@ -172,7 +175,7 @@ fn serve(request: Request, stop: &AtomicBool) -> Result<Loaded, LoadError> {
     }
 }
 
-type Missing = (Assets, Vec<crate::io::folder::FileRecord>, Vec<String>);
+type Missing = (Assets, Vec<FileRecord>, Vec<String>);
 
 fn missing(
     description: &SceneDescription,

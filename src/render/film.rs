@@ -1,6 +1,6 @@
 //! Where samples are summed: linear, whole passes only.
 
-use crate::color::{Rgb, luminance};
+use crate::color::{Picture, Rgb, luminance};
 use crate::render::noise::NoiseEstimate;
 use crate::render::plan::Tile;
 
@@ -12,17 +12,6 @@ pub struct Film {
     n_samples: u32,
     sums: Vec<[f64; 3]>,
     noise: NoiseEstimate,
-}
-
-/// A linear picture, row 0 at the top.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Picture {
-    /// Width in pixels.
-    pub width: u32,
-    /// Height in pixels.
-    pub height: u32,
-    /// `width * height` linear colours, row by row.
-    pub pixels: Vec<[f32; 3]>,
 }
 
 /// The film of that size does not fit into memory.

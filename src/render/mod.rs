@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use crate::render::integrator::TileRenderer;
 
-pub use film::{Film, Picture};
+pub use film::Film;
 pub use job::{RenderJob, RenderSettings};
 pub use world::{Pick, World};
 

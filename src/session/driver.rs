@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use crate::render::{Film, PassStatistics, RenderJob, plan};
 use crate::session::{Frame, Goal, Phase, Renderer, Shared, lock};
+use crate::threads;
 
 /// A preview is made as fine as fits this.
 const PREVIEW_SECS: f64 = 0.02;
@@ -30,7 +31,8 @@ struct Work<W> {
     n_invalid: u64,
     /// Seconds spent in passes.
     seconds: f64,
-    is_published: bool,
+    /// Samples of the full-size picture in the slot; 0 before the first.
+    published_samples: u32,
     last_publish: Instant,
 }
 
@@ -66,17 +68,18 @@ pub(super) fn run<R: Renderer>(
     };
     let mut work: Option<Work<R::World>> = None;
     loop {
-        match driver.wait(work.as_ref()) {
+        match driver.wait(work.as_mut()) {
             Next::Close => return,
             Next::Begin(generation, job) => {
-                // The old world's memory goes before the new one's is taken.
+                // The old film's memory goes before the new one's is taken.
                 drop(work.take());
                 let begun = catch_unwind(AssertUnwindSafe(|| driver.begin(generation, job)));
                 work = driver.contained(begun).flatten();
             }
             Next::GoOn => {
                 let Some(current) = &mut work else { continue };
-                let passed = catch_unwind(AssertUnwindSafe(|| driver.refine(current)));
+                let stop = &shared.stop_refining;
+                let passed = catch_unwind(AssertUnwindSafe(|| driver.refine(current, stop)));
                 if driver.contained(passed).is_none() {
                     work = None;
                 }
@@ -87,7 +90,7 @@ pub(super) fn run<R: Renderer>(
 
 impl<R: Renderer> Driver<'_, R> {
     /// Sleeps until there is something to do.
-    fn wait(&self, work: Option<&Work<R::World>>) -> Next {
+    fn wait(&mut self, mut work: Option<&mut Work<R::World>>) -> Next {
         let mut orders = self.shared.orders();
         loop {
             if orders.is_closing {
@@ -97,7 +100,7 @@ impl<R: Renderer> Driver<'_, R> {
                 self.shared.stop_refining.store(false, Ordering::Relaxed);
                 return Next::Begin(orders.generation, job);
             }
-            let phase = match work {
+            let phase = match work.as_deref() {
                 None => None,
                 Some(work) if is_reached(&orders.goal, work) => Some(Phase::Done),
                 Some(work) if orders.is_paused && work.film.n_samples() > 0 => Some(Phase::Paused),
@@ -108,14 +111,14 @@ impl<R: Renderer> Driver<'_, R> {
             };
             let goal = orders.goal;
             drop(orders);
-            if let (Some(phase), Some(work)) = (phase, work) {
+            if let (Some(phase), Some(work)) = (phase, work.as_deref_mut()) {
                 self.rest(phase, goal, work);
             }
             orders = self.shared.orders();
             let is_still_idle = orders.mailbox.is_none()
                 && !orders.is_closing
                 && orders.goal == goal
-                && work.is_none_or(|work| {
+                && work.as_deref().is_none_or(|work| {
                     is_reached(&orders.goal, work)
                         || (orders.is_paused && work.film.n_samples() > 0)
                 });
@@ -125,8 +128,12 @@ impl<R: Renderer> Driver<'_, R> {
         }
     }
 
-    /// Tells that nothing is being done, once.
-    fn rest(&self, phase: Phase, goal: Goal, work: &Work<R::World>) {
+    /// Tells that nothing is being done, once; the last picture is always shown.
+    fn rest(&mut self, phase: Phase, goal: Goal, work: &mut Work<R::World>) {
+        if work.published_samples != work.film.n_samples() {
+            let frame = self.frame(work, 1, &work.film);
+            self.publish(work, frame);
+        }
         let mut is_news = false;
         self.shared.update_status(|status| {
             is_news = status.phase != phase || status.goal_samples != goal.samples;
@@ -150,11 +157,7 @@ impl<R: Renderer> Driver<'_, R> {
         match result {
             Ok(value) => Some(value),
             Err(panic) => {
-                let text = panic
-                    .downcast_ref::<String>()
-                    .cloned()
-                    .or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()))
-                    .unwrap_or_else(|| "unknown".to_owned());
+                let text = threads::panic_text(&*panic);
                 self.set_phase(Phase::Failed(format!("the renderer failed: {text}")));
                 None
             }
@@ -195,7 +198,7 @@ impl<R: Renderer> Driver<'_, R> {
             film,
             n_invalid: 0,
             seconds: 0.0,
-            is_published: false,
+            published_samples: 0,
             last_publish: Instant::now(),
         };
         self.preview(&mut work);
@@ -208,6 +211,10 @@ impl<R: Renderer> Driver<'_, R> {
         let n_pixels = u64::from(work.job.width) * u64::from(work.job.height);
         let mut scale = plan::preview_scale(n_pixels, self.rate, PREVIEW_SECS);
         let mut stop = &self.shared.stop_all;
+        if scale == 1 {
+            // So fast that the first sample is the preview: it is not stopped by an edit either.
+            return self.refine(work, stop);
+        }
         while scale > 1 {
             if !self.coarse(work, scale, stop) {
                 return;
@@ -233,16 +240,16 @@ impl<R: Renderer> Driver<'_, R> {
     }
 
     /// One pass at full size.
-    fn refine(&mut self, work: &mut Work<R::World>) {
+    fn refine(&mut self, work: &mut Work<R::World>, stop: &AtomicBool) {
         let goal = self.shared.orders().goal;
         let before = work.film.n_samples();
         let mut n_samples = plan::pass_samples(before, goal.samples);
         let n_pixels = f64::from(work.job.width) * f64::from(work.job.height);
         let affordable = (self.rate * PASS_SECS / n_pixels) as u32;
         n_samples = n_samples.min(affordable.max(1));
-        self.shared.update_status(|status| status.phase = Phase::Refining);
+        let phase = if before == 0 { Phase::Preview } else { Phase::Refining };
+        self.shared.update_status(|status| status.phase = phase);
         let start = Instant::now();
-        let stop = &self.shared.stop_refining;
         let passed = self.renderer.pass(&work.world, &mut work.film, n_samples, stop);
         let seconds = start.elapsed().as_secs_f64();
         work.seconds += seconds;
@@ -259,7 +266,7 @@ impl<R: Renderer> Driver<'_, R> {
             status.seconds_left = seconds_left(&goal, work);
         });
         let is_last = is_reached(&goal, work);
-        let is_first = before == 0 || !work.is_published;
+        let is_first = before == 0;
         if is_first || is_last || work.last_publish.elapsed() >= PUBLISH_INTERVAL {
             let frame = self.frame(work, 1, &work.film);
             self.publish(work, frame);
@@ -290,8 +297,12 @@ impl<R: Renderer> Driver<'_, R> {
     }
 
     fn publish(&self, work: &mut Work<R::World>, frame: Frame) {
-        *lock(&self.shared.slot) = Some(Arc::new(frame));
-        work.is_published = true;
+        if frame.scale == 1 {
+            work.published_samples = frame.samples;
+        }
+        let older = lock(&self.shared.slot).replace(Arc::new(frame));
+        // Freeing a large picture takes longer than a pointer swap: not under the lock.
+        drop(older);
         work.last_publish = Instant::now();
         self.shared.wake();
     }

@@ -6,6 +6,7 @@ use super::relocate::relocated;
 use crate::io::output::{create_file, encode_png, replace_file};
 use crate::io::{scene_file, snapshot};
 use crate::session::Frame;
+use crate::tone_mapping::srgb_bytes;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -60,7 +61,8 @@ impl App {
                     Ok(texts) => texts,
                     Err(error) => return Written::Failed(format!("snapshot: {error}")),
                 };
-            match encode_png(&frame.picture, &description.tone_mapping, &texts) {
+            let srgb = srgb_bytes(&frame.picture, &description.tone_mapping);
+            match encode_png(size, &srgb, &texts) {
                 Ok(bytes) => write_numbered(&pictures_folder(), &title, &bytes),
                 Err(error) => Written::Failed(format!("snapshot: {error}")),
             }

@@ -6,7 +6,6 @@ use super::files::Written;
 use crate::io::output::{encode_png, replace_file};
 use crate::io::snapshot;
 use crate::loader::Source;
-use crate::render::Picture;
 use crate::scene::description::SceneDescription;
 use egui::{Align2, Id, RichText, Vec2};
 use std::path::PathBuf;
@@ -74,14 +73,12 @@ impl App {
         self.files.write(ctx, move || {
             let render = &description.render;
             let size = (render.width, render.height);
-            let picture = Picture { width: 1, height: 1, pixels: vec![[0.0; 3]] };
             let texts =
                 snapshot::texts(&description, size, render.samples, &records, Some(&folder));
             let written = texts
                 .map_err(|error| error.to_string())
                 .and_then(|texts| {
-                    encode_png(&picture, &description.tone_mapping, &texts)
-                        .map_err(|error| error.to_string())
+                    encode_png((1, 1), &[0; 3], &texts).map_err(|error| error.to_string())
                 })
                 .and_then(|bytes| replace_file(&path, &bytes).map_err(|error| error.to_string()));
             match written {

@@ -1,1 +1,5 @@
-fn main() {}
+//! The suite: what the picture must be, told by closed forms, densities and oracles.
+
+mod analytic;
+mod common;
+mod oracle;

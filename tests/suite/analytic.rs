@@ -1,0 +1,3 @@
+//! Radiance against closed forms and quadrature.
+
+mod lights;
