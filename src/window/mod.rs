@@ -11,6 +11,7 @@ mod background;
 mod color;
 mod compare;
 mod dialogs;
+mod fields;
 mod files;
 mod gesture;
 mod handles;

@@ -221,3 +221,19 @@ fn a_pinned_picture_can_be_restored() {
     harness.run_steps(3);
     assert_eq!(harness.state().document.description, before, "the pinned scene is not back");
 }
+
+#[test]
+fn a_mesh_named_by_an_edit_is_loaded_and_rendered() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene_file(folder.path());
+    std::fs::write(folder.path().join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let mut harness = window(&path, [1024.0, 700.0]);
+    let object = &mut harness.state_mut().document.description.objects[0];
+    object.file = Some("a.obj".to_owned());
+    object.kind = crate::scene::description::ObjectKind::Mesh;
+    wait_until(&mut harness, |app| app.work.assets.meshes.len() == 1);
+    harness.run_steps(3);
+    let scene = harness.state().work.scene().expect("it resolves");
+    let is_mesh = matches!(scene.objects[0].instance.shape(), crate::geometry::Shape::Mesh(_));
+    assert!(is_mesh, "the old shape is still rendered");
+}
