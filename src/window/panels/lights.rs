@@ -41,7 +41,7 @@ pub(in crate::window) fn lights_ui(
 fn light_ui(ui: &mut Ui, light: &mut LightDescription, reach: f64) {
     let path = |key: &str| format!("lights.{}.{key}", path_segment(&light.name));
     let (position, target, power) = (path("position"), path("target"), path("power"));
-    let size = path("size");
+    let (size, up) = (path("size"), path("up"));
     row(ui, "", "", |ui| {
         ui.checkbox(&mut light.enabled, "Enabled").on_hover_text("off: as if it were not there");
         ui.checkbox(&mut light.visible, "Visible")
@@ -60,6 +60,13 @@ fn light_ui(ui: &mut Ui, light: &mut LightDescription, reach: f64) {
     if !matches!(light.kind, LightKind::Point | LightKind::Sphere) {
         let help = "the side that shines faces this point";
         triple(ui, "Target", &target, help, speed, &mut light.target);
+    }
+    if light.kind == LightKind::Rectangle {
+        let before = light.up;
+        triple(ui, "Up", &up, "turns the rectangle about its axis", 0.01, &mut light.up);
+        if light.up == [0.0; 3] {
+            light.up = before;
+        }
     }
 }
 

@@ -44,7 +44,7 @@ pub(in crate::window) fn materials_ui(
         .map(|texture| (texture.name.clone(), can_bump(texture.kind)))
         .collect();
     if let Some(material) = index.and_then(|index| scene.materials.get_mut(index)) {
-        ui.vertical_centered(|ui| preview(ui, material, &scene.textures));
+        row(ui, "", "", |ui| preview(ui, material, &scene.textures));
         material_ui(ui, material, &textures, &mut selection.alphas_linked);
     }
 }

@@ -5,8 +5,9 @@ use super::{Selection, path_segment, subheading};
 use crate::scene::description::{
     NormalsKind, ObjectDescription, ObjectKind, OneOrThree, SceneDescription,
 };
+use crate::window::fields::entered_text;
 use crate::window::structure::{self, Part};
-use crate::window::widgets::{Figure, choice, pick_one, row, triple};
+use crate::window::widgets::{Figure, choice, pick_one, row, switch, triple};
 use egui::Ui;
 
 const NO_MATERIAL: &str = "none";
@@ -76,6 +77,12 @@ fn object_ui(ui: &mut Ui, object: &mut ObjectDescription, materials: &[String], 
             Some(index) => object.material = Some(materials[index - 1].clone()),
         }
     });
+    let file = object.file.clone().unwrap_or_default();
+    let help = "an OBJ file, relative to the scene; entering one makes this object a mesh";
+    if let Some(file) = entered_text(ui, "Mesh file", help, "path of an OBJ file", &file) {
+        object.file = Some(file);
+        object.kind = ObjectKind::Mesh;
+    }
     transform_ui(ui, object, reach);
     shape_ui(ui, object, reach);
 }
@@ -86,6 +93,14 @@ fn transform_ui(ui: &mut Ui, object: &mut ObjectDescription, reach: f64) {
     let speed = (reach * 0.002).max(1e-5);
     triple(ui, "Move", &translate, "added last, in scene units", speed, &mut object.translate);
     triple(ui, "Turn", &rotate, "degrees about X, then Y, then Z", 0.5, &mut object.rotate);
+    let mut per_axis = matches!(object.scale, OneOrThree::Three(_));
+    let help = "scales each axis by itself";
+    switch(ui, "Scale each axis", help, &mut per_axis);
+    object.scale = match (per_axis, object.scale) {
+        (true, OneOrThree::One(factor)) => OneOrThree::Three([factor; 3]),
+        (false, OneOrThree::Three([factor, ..])) => OneOrThree::One(factor),
+        (_, scale) => scale,
+    };
     match object.scale {
         OneOrThree::One(factor) => {
             let mut new = factor;
@@ -115,10 +130,6 @@ fn shape_ui(ui: &mut Ui, object: &mut ObjectDescription, reach: f64) {
     let speed = (reach * 0.002).max(1e-5);
     match object.kind {
         ObjectKind::Mesh => {
-            row(ui, "File", "", |ui| {
-                let file = object.file.as_deref().unwrap_or("none");
-                ui.add(egui::Label::new(file).truncate()).on_hover_text(file);
-            });
             choice(ui, "Normals", "how the surface is shaded", &mut object.normals, &NORMALS);
             if object.normals != NormalsKind::Flat {
                 Figure::new("Crease", path("crease_angle"), 0.0..=180.0)

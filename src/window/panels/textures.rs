@@ -5,6 +5,7 @@ use super::parts::part_list;
 use super::{Selection, path_segment, subheading};
 use crate::scene::description::{SceneDescription, TextureDescription, TextureKind, Triple};
 use crate::window::color::swatch;
+use crate::window::fields::entered_text;
 use crate::window::presets;
 use crate::window::structure::Part;
 use crate::window::theme::ROW_HEIGHT;
@@ -71,6 +72,12 @@ fn texture_ui(ui: &mut Ui, texture: &mut TextureDescription) {
             fit_colors(texture);
         }
     });
+    let file = texture.file.clone().unwrap_or_default();
+    let help = "a PNG or JPEG, relative to the scene; entering one makes this texture an image";
+    if let Some(file) = entered_text(ui, "Image file", help, "path of a picture", &file) {
+        texture.file = Some(file);
+        texture.kind = TextureKind::Image;
+    }
     figures_ui(ui, texture);
     if texture.kind != TextureKind::Image {
         colors_ui(ui, texture);

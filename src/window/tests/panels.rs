@@ -318,3 +318,23 @@ fn display_and_render_follow_their_controls() {
     press(&mut rendered, "Size: Window");
     assert_eq!(rendered.state().size_mode, SizeMode::Window, "the size stays fixed");
 }
+
+#[test]
+fn a_mesh_is_entered_by_its_path() {
+    let mut harness = harness(OBJECTS);
+    harness.get_by_role_and_label(Role::TextInput, "Mesh file").click();
+    harness.run();
+    harness.event(egui::Event::Text("meshes/egg.obj".to_owned()));
+    harness.run();
+    assert_eq!(harness.state().scene, small_scene(), "every letter counts");
+    harness.key_press(egui::Key::Enter);
+    harness.run();
+    let object = &harness.state().scene.objects[0];
+    assert_eq!(object.file.as_deref(), Some("meshes/egg.obj"), "another file");
+    assert_eq!(object.kind, crate::scene::description::ObjectKind::Mesh, "no mesh");
+    harness.get_by_role_and_label(Role::CheckBox, "Scale each axis").click();
+    harness.run();
+    type_figure(&mut harness, "Scale Y", "2");
+    let scale = harness.state().scene.objects[0].scale.triple();
+    assert_eq!(scale, [1.0, 2.0, 1.0], "another scale");
+}

@@ -175,3 +175,65 @@ fn unsaved_edits_survive_a_crash() {
     let restored = &harness.state().document.description;
     assert_eq!(*restored, edited, "the edits were lost");
 }
+
+#[test]
+fn escape_keeps_the_scene_that_another_would_replace() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene_file(folder.path());
+    let mut harness = window(&path, [1024.0, 700.0]);
+    harness.key_press(egui::Key::E);
+    harness.run_steps(2);
+    harness.state_mut().open(Source::Gallery("pyramid"));
+    harness.run_steps(3);
+    assert!(harness.query_by_label_contains("Do not save").is_some(), "nobody asks");
+    harness.key_press(egui::Key::Escape);
+    harness.run_steps(3);
+    assert!(harness.query_by_label_contains("Do not save").is_none(), "the question stays");
+    assert!(harness.state().document.is_dirty(), "the edit is gone");
+}
+
+#[test]
+fn a_light_is_dragged_in_the_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&scene_file(folder.path()), [1400.0, 900.0]);
+    harness.state_mut().interface.lights_shown = true;
+    harness.state_mut().document.description.lights[0].position = [0.5, 0.5, 0.0];
+    harness.run_steps(3);
+    let mark = harness.get_by_label("Light key in the picture").rect().center();
+    drag(&mut harness, mark, egui::vec2(40.0, 0.0));
+    let scene = &harness.state().document.description;
+    assert!(scene.lights[0].position[0] > 0.6, "at {:?}", scene.lights[0].position);
+    assert_eq!(scene.camera, super::small_scene().camera, "the camera moved with it");
+}
+
+#[test]
+fn a_pinned_picture_can_be_restored() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&scene_file(folder.path()), [1400.0, 900.0]);
+    wait_until(&mut harness, |app| app.picture_on_show().is_some());
+    let before = harness.state().document.description.clone();
+    harness.key_press(egui::Key::X);
+    harness.run_steps(2);
+    harness.key_press(egui::Key::D);
+    harness.run_steps(3);
+    assert!(harness.query_by_label_contains("camera.aperture_radius").is_some(), "not listed");
+    harness.get_by_role_and_label(Role::Button, "Restore").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().document.description, before, "the pinned scene is not back");
+}
+
+#[test]
+fn a_mesh_named_by_an_edit_is_loaded_and_rendered() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene_file(folder.path());
+    std::fs::write(folder.path().join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let mut harness = window(&path, [1024.0, 700.0]);
+    let object = &mut harness.state_mut().document.description.objects[0];
+    object.file = Some("a.obj".to_owned());
+    object.kind = crate::scene::description::ObjectKind::Mesh;
+    wait_until(&mut harness, |app| app.work.assets.meshes.len() == 1);
+    harness.run_steps(3);
+    let scene = harness.state().work.scene().expect("it resolves");
+    let is_mesh = matches!(scene.objects[0].instance.shape(), crate::geometry::Shape::Mesh(_));
+    assert!(is_mesh, "the old shape is still rendered");
+}
