@@ -110,8 +110,7 @@ fn ward_samples_have_their_density_in_every_form() {
 fn mixtures_have_their_density() {
     for (diffuse, specular) in [(0.5, 0.3), (0.0, 0.4), (0.7, 0.0), (0.05, 0.9)] {
         let lobe = Ward { form: WardForm::Bounded, alpha_x: 0.25, alpha_y: 0.5 };
-        let glossy =
-            Glossy { diffuse: Rgb::splat(diffuse), specular: Rgb::splat(specular), lobe };
+        let glossy = Glossy { diffuse: Rgb::splat(diffuse), specular: Rgb::splat(specular), lobe };
         for wo in [viewer(30.0, 1.0), viewer(80.0, 4.0), viewer(100.0, 1.0)] {
             let what = format!("{diffuse} diffuse, {specular} glossy from {wo}");
             assert_hemisphere(|u| glossy.sample(wo, u), |wi| glossy.pdf(wo, wi), &what);

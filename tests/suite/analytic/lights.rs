@@ -137,8 +137,9 @@ fn a_sun_gives_a_facing_surface_its_power_whatever_its_size() {
         ));
         assert_close(irradiance(&body, ASIDE, [0.0; 3]), 1.5, 1e-3, "tilted sun");
     }
-    let body =
-        light("type = 'sun'\nposition = [-0.8660254037844386, 0.5, 0]\nsize = 180\npower = [3, 3, 3]");
+    let body = light(
+        "type = 'sun'\nposition = [-0.8660254037844386, 0.5, 0]\nsize = 180\npower = [3, 3, 3]",
+    );
     let expected = 3.0 * 0.5 * (1.0 + 0.5);
     assert_close(irradiance(&body, ASIDE, [0.0; 3]), expected, 3e-3, "half of a tilted sky");
 }
@@ -199,7 +200,8 @@ fn visible_lights_are_seen_with_their_radiance_from_their_emitting_side() {
                  position = [0, 0, 0]\npower = [8, 8, 8]\nvisible = {visible}\n"
             )
         };
-        let look = |eye, visible| Look::at(eye, [0.1, 0.2, 0.0]).samples(4).radiance(&body(visible)).x;
+        let look =
+            |eye, visible| Look::at(eye, [0.1, 0.2, 0.0]).samples(4).radiance(&body(visible)).x;
         assert_close(look(front, true), 8.0 * radiance, 1e-5, keys);
         assert_close(look(front, false), 0.25, 1e-6, "an invisible light");
         let from_behind = if keys.contains("sphere") { 8.0 * radiance } else { 0.25 };
@@ -276,8 +278,9 @@ fn light_below_the_horizon_does_not_arrive() {
     let body = light("type = 'sun'\nposition = [1, -0.01, 0]\nsize = 0.5\npower = [3, 3, 3]");
     assert_eq!(irradiance(&body, ASIDE, [0.0; 3]), 0.0, "a sun that has set");
     // A sphere cut in half by the floor: the upper half of a cap seen edge on, in closed form.
-    let body =
-        light("type = 'sphere'\nposition = [2, 0, 0]\nsize = 2\nvisible = false\npower = [5, 5, 5]");
+    let body = light(
+        "type = 'sphere'\nposition = [2, 0, 0]\nsize = 2\nvisible = false\npower = [5, 5, 5]",
+    );
     let radiance = 5.0 / (4.0 * PI * PI);
     let (sin, angle) = (0.5_f64, (0.5_f64).asin());
     // Of a cap of half angle a whose centre is on the horizon: E = L (a - sin a cos a).
