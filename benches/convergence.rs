@@ -38,7 +38,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             continue;
         }
         let loaded = load(&Source::Gallery(entry.name), &[], &AtomicBool::new(false))?;
-        pool.install(|| measure(entry.name, &loaded, &options))?;
+        pool.install(|| measure(entry.name, &loaded, &options))
+            .map_err(|error| error.to_string())?;
     }
     Ok(())
 }
@@ -64,7 +65,7 @@ fn measure(
     name: &str,
     loaded: &Loaded,
     options: &Options,
-) -> Result<(), Box<dyn std::error::Error>> {
+) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
     let n_reference = options.reference.unwrap_or(16 * options.samples);
     let reference = world(loaded, options.width, SamplerKind::Sobol, 4711)?;
     let mut film = Film::new(reference.job.width, reference.job.height)?;
@@ -99,7 +100,7 @@ fn world(
     width: u32,
     sampler: SamplerKind,
     seed: u32,
-) -> Result<World, Box<dyn std::error::Error>> {
+) -> Result<World, Box<dyn std::error::Error + Send + Sync>> {
     let mut description = loaded.description.clone();
     let render = &mut description.render;
     render.height = (width * render.height / render.width).max(1);

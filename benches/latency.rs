@@ -20,6 +20,7 @@ use penumbra::geometry::mesh::Mesh;
 use penumbra::geometry::{AcceleratorKind, TracedMesh};
 use penumbra::io::scene_file;
 use penumbra::loader::{Source, load};
+use penumbra::math::portable::{cos, sin};
 use penumbra::render::{RenderJob, RenderSettings};
 use penumbra::scene::assets::{MeshAsset, MeshKey};
 use penumbra::scene::description::{OneOrTwo, SceneDescription, ToneOperator};
@@ -142,10 +143,9 @@ fn sphere_scene() -> Result<(SceneDescription, Assets), Box<dyn std::error::Erro
         for column in 0..=columns {
             let theta = std::f32::consts::PI * row as f32 / rows as f32;
             let phi = std::f32::consts::TAU * column as f32 / columns as f32;
-            let radius = 1.0 + 0.05 * (12.0 * theta).sin() * (9.0 * phi).cos();
-            let ring = theta.sin();
-            mesh.positions
-                .push(radius * Vec3::new(ring * phi.cos(), theta.cos(), ring * phi.sin()));
+            let radius = 1.0 + 0.05 * sin(12.0 * theta) * cos(9.0 * phi);
+            let ring = sin(theta);
+            mesh.positions.push(radius * Vec3::new(ring * cos(phi), cos(theta), ring * sin(phi)));
         }
     }
     for row in 0..rows {

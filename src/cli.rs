@@ -8,6 +8,7 @@ use anyhow::Context;
 use clap::{Args, Parser, Subcommand};
 
 use crate::geometry::AcceleratorKind;
+use crate::io::printable;
 use crate::io::scene_file::Override;
 
 mod info;
@@ -148,15 +149,12 @@ pub fn run(command: &Command) -> ExitCode {
 /// command line cannot reach the terminal as an escape sequence.
 pub fn explain(error: &clap::Error) -> ExitCode {
     let text = error.to_string();
-    let is_unsafe = |c: char| c.is_control() && c != '\n';
-    if text.contains(is_unsafe) {
-        let escaped =
-            |c: char| if is_unsafe(c) { c.escape_debug().collect() } else { c.to_string() };
-        let safe: String = text.chars().map(escaped).collect();
-        // Nobody is left to be told.
-        let _ = stderr().write_all(safe.as_bytes());
-    } else {
+    let safe: Vec<String> = text.lines().map(printable).collect();
+    // Where nobody is left to be told, the status still says it.
+    if text.lines().eq(safe.iter()) {
         let _ = error.print();
+    } else {
+        let _ = writeln!(stderr(), "{}", safe.join("\n"));
     }
     ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
 }
@@ -165,6 +163,22 @@ pub fn explain(error: &clap::Error) -> ExitCode {
 fn print(text: &str) -> anyhow::Result<()> {
     let mut out = stdout().lock();
     writeln!(out, "{text}").and_then(|()| out.flush()).context("the standard output")
+}
+
+/// Prints a JSON object. Characters that could mean something to a terminal are escaped, which
+/// changes nothing for whoever reads it as JSON.
+fn print_json(value: &serde_json::Value) -> anyhow::Result<()> {
+    let mut text = String::new();
+    for c in value.to_string().chars() {
+        if c.is_ascii() || printable(c.encode_utf8(&mut [0; 4])).chars().eq([c]) {
+            text.push(c);
+        } else {
+            for unit in c.encode_utf16(&mut [0; 2]) {
+                text += &format!("\\u{unit:04x}");
+            }
+        }
+    }
+    print(&text)
 }
 
 /// The one place that prints anything else.

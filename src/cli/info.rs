@@ -4,7 +4,7 @@ use glam::Vec3;
 use serde_json::json;
 
 use crate::cli::render::{open, world_of};
-use crate::cli::{Failure, InfoArguments, print, warn};
+use crate::cli::{Failure, InfoArguments, print, print_json, warn};
 use crate::geometry::AcceleratorKind;
 use crate::loader::Loaded;
 use crate::scene::assets::MeshKey;
@@ -36,7 +36,7 @@ pub(super) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
                 "bytes": tree.n_bytes,
             },
         });
-        return Ok(print(&info.to_string())?);
+        return Ok(print_json(&info)?);
     }
     let Counts { vertices, triangles, materials, objects, lights } = counts;
     let bounds = bounds.map_or("none".to_owned(), |b| format!("{} to {}", b[0], b[1]));

@@ -8,7 +8,7 @@ use std::time::Instant;
 use anyhow::{Context, bail};
 
 use crate::cli::progress::Progress;
-use crate::cli::{Failure, RenderArguments, print, warn};
+use crate::cli::{Failure, RenderArguments, print_json, warn};
 use crate::color::Picture;
 use crate::geometry::AcceleratorKind;
 use crate::io::output::{
@@ -60,7 +60,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
             "seconds": seconds,
             "noise_percent": film.noise_percent(),
         });
-        print(&summary.to_string())?;
+        print_json(&summary)?;
     }
     Ok(())
 }

@@ -9,14 +9,16 @@
 pub(super) trait Lanes: Copy {
     /// How many.
     const N: usize;
+    /// The lanes as an array.
+    type Stored: Copy + std::ops::Index<usize, Output = f32>;
     /// The same number in every lane.
     fn splat(x: f32) -> Self;
     /// The first `N` numbers of a slice that has them.
     fn load(from: &[f32]) -> Self;
     /// Into the first `N` places of a slice that has them.
     fn store(self, to: &mut [f32]);
-    /// Sum.
-    fn add(self, other: Self) -> Self;
+    /// Into an array.
+    fn stored(self) -> Self::Stored;
     /// Difference.
     fn sub(self, other: Self) -> Self;
     /// Product.
@@ -92,6 +94,12 @@ impl<const N: usize> Array<N> {
 
 impl<const N: usize> Lanes for Array<N> {
     const N: usize = N;
+    type Stored = [f32; N];
+
+    #[inline(always)]
+    fn stored(self) -> [f32; N] {
+        self.0
+    }
 
     #[inline(always)]
     fn splat(x: f32) -> Self {
@@ -104,10 +112,6 @@ impl<const N: usize> Lanes for Array<N> {
     #[inline(always)]
     fn store(self, to: &mut [f32]) {
         to[..N].copy_from_slice(&self.0);
-    }
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self.zip(other, |a, b| a + b)
     }
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -195,11 +199,7 @@ mod x86 {
     // (`wide_bvh::dispatch`). Loads and stores are of slices whose length is checked first.
 
     macro_rules! arithmetic {
-        ($add:ident $sub:ident $mul:ident $div:ident $min:ident $max:ident) => {
-            #[inline(always)]
-            fn add(self, other: Self) -> Self {
-                Self(unsafe { $add(self.0, other.0) })
-            }
+        ($sub:ident $mul:ident $div:ident $min:ident $max:ident) => {
             #[inline(always)]
             fn sub(self, other: Self) -> Self {
                 Self(unsafe { $sub(self.0, other.0) })
@@ -225,7 +225,15 @@ mod x86 {
 
     impl Lanes for F4 {
         const N: usize = 4;
-        arithmetic!(_mm_add_ps _mm_sub_ps _mm_mul_ps _mm_div_ps _mm_min_ps _mm_max_ps);
+        type Stored = [f32; 4];
+
+        #[inline(always)]
+        fn stored(self) -> [f32; 4] {
+            let mut lanes = [0.0; 4];
+            self.store(&mut lanes);
+            lanes
+        }
+        arithmetic!(_mm_sub_ps _mm_mul_ps _mm_div_ps _mm_min_ps _mm_max_ps);
 
         #[inline(always)]
         fn splat(x: f32) -> Self {
@@ -273,8 +281,16 @@ mod x86 {
 
     impl Lanes for F8 {
         const N: usize = 8;
+        type Stored = [f32; 8];
+
+        #[inline(always)]
+        fn stored(self) -> [f32; 8] {
+            let mut lanes = [0.0; 8];
+            self.store(&mut lanes);
+            lanes
+        }
         arithmetic!(
-            _mm256_add_ps _mm256_sub_ps _mm256_mul_ps _mm256_div_ps _mm256_min_ps _mm256_max_ps
+            _mm256_sub_ps _mm256_mul_ps _mm256_div_ps _mm256_min_ps _mm256_max_ps
         );
 
         #[inline(always)]
@@ -320,8 +336,16 @@ mod x86 {
 
     impl Lanes for F16 {
         const N: usize = 16;
+        type Stored = [f32; 16];
+
+        #[inline(always)]
+        fn stored(self) -> [f32; 16] {
+            let mut lanes = [0.0; 16];
+            self.store(&mut lanes);
+            lanes
+        }
         arithmetic!(
-            _mm512_add_ps _mm512_sub_ps _mm512_mul_ps _mm512_div_ps _mm512_min_ps _mm512_max_ps
+            _mm512_sub_ps _mm512_mul_ps _mm512_div_ps _mm512_min_ps _mm512_max_ps
         );
 
         #[inline(always)]
@@ -368,25 +392,29 @@ mod x86 {
         }
     }
 
-    impl<L: Lanes> Lanes for Pair<L> {
-        const N: usize = 2 * L::N;
+    impl Lanes for Pair<F8> {
+        const N: usize = 16;
+        type Stored = [f32; 16];
+
+        #[inline(always)]
+        fn stored(self) -> [f32; 16] {
+            let mut lanes = [0.0; 16];
+            self.store(&mut lanes);
+            lanes
+        }
 
         #[inline(always)]
         fn splat(x: f32) -> Self {
-            Self(L::splat(x), L::splat(x))
+            Self(F8::splat(x), F8::splat(x))
         }
         #[inline(always)]
         fn load(from: &[f32]) -> Self {
-            Self(L::load(from), L::load(&from[L::N..]))
+            Self(F8::load(from), F8::load(&from[F8::N..]))
         }
         #[inline(always)]
         fn store(self, to: &mut [f32]) {
             self.0.store(to);
-            self.1.store(&mut to[L::N..]);
-        }
-        #[inline(always)]
-        fn add(self, other: Self) -> Self {
-            Self(self.0.add(other.0), self.1.add(other.1))
+            self.1.store(&mut to[F8::N..]);
         }
         #[inline(always)]
         fn sub(self, other: Self) -> Self {
@@ -414,19 +442,19 @@ mod x86 {
         }
         #[inline(always)]
         fn lt(self, other: Self) -> u32 {
-            self.0.lt(other.0) | self.1.lt(other.1) << L::N
+            self.0.lt(other.0) | self.1.lt(other.1) << F8::N
         }
         #[inline(always)]
         fn le(self, other: Self) -> u32 {
-            self.0.le(other.0) | self.1.le(other.1) << L::N
+            self.0.le(other.0) | self.1.le(other.1) << F8::N
         }
         #[inline(always)]
         fn eq(self, other: Self) -> u32 {
-            self.0.eq(other.0) | self.1.eq(other.1) << L::N
+            self.0.eq(other.0) | self.1.eq(other.1) << F8::N
         }
         #[inline(always)]
         fn blend(self, other: Self, mask: u32) -> Self {
-            Self(self.0.blend(other.0, mask & L::ALL), self.1.blend(other.1, mask >> L::N))
+            Self(self.0.blend(other.0, mask & F8::ALL), self.1.blend(other.1, mask >> F8::N))
         }
         #[inline(always)]
         fn least(self) -> f32 {

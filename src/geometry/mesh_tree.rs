@@ -72,6 +72,8 @@ impl MeshTree {
             Structure::KdTree(tree, triangles)
         };
         let structure = match kind {
+            // Nothing to divide.
+            _ if mesh.triangles.is_empty() => Structure::List(Vec::new()),
             AcceleratorKind::WideBvh => Structure::WideBvh(WideBvh::build(mesh)),
             AcceleratorKind::KdTree => kd_tree(Split::SurfaceArea),
             AcceleratorKind::KdMidpoint => kd_tree(Split::Midpoint),

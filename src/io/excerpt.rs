@@ -34,8 +34,13 @@ pub fn excerpt(bytes: &[u8]) -> String {
 
 /// A path, safe to print on one line and whole: what cannot be printed is escaped.
 pub fn printable_path(path: &Path) -> String {
+    printable(&path.to_string_lossy())
+}
+
+/// A text, safe to print on one line and whole: what cannot be printed is escaped.
+pub fn printable(foreign: &str) -> String {
     let mut text = String::new();
-    for c in path.to_string_lossy().chars() {
+    for c in foreign.chars() {
         push_escaped(&mut text, c);
     }
     text

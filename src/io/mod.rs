@@ -11,4 +11,4 @@ pub mod output;
 pub mod scene_file;
 pub mod snapshot;
 
-pub use excerpt::{excerpt, printable_path};
+pub use excerpt::{excerpt, printable, printable_path};

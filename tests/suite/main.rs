@@ -1,6 +1,18 @@
-//! The suite: what the picture must be, told by closed forms, densities and oracles.
+//! What Penumbra promises, tested from outside: one binary, a module a subject.
 
+#[cfg(test)]
 mod analytic;
+#[cfg(test)]
+mod cli;
+#[cfg(test)]
 mod common;
+#[cfg(test)]
 mod density;
+#[cfg(test)]
+mod floors;
+#[cfg(test)]
+mod hostile;
+#[cfg(test)]
 mod oracle;
+#[cfg(test)]
+mod session;

@@ -130,13 +130,14 @@ impl<I: Isa> Visit<I> for TakeNearest<'_> {
             let mut limits = [0.0; LANES];
             packet.limit.store(&mut limits);
             let mut left = candidates.mask;
+            let corners = candidates.stored();
             while left != 0 {
                 let lane = left.trailing_zeros() as usize;
                 left &= left - 1;
                 if self.sources[lane] == id {
                     continue;
                 }
-                if let Some(t) = candidates.decide(lane, packet.speeds[lane]) {
+                if let Some(t) = corners.decide(lane, packet.speeds[lane]) {
                     self.nearest[lane].offer(t, self.object, id);
                     limits[lane] = self.nearest[lane].t();
                 }
@@ -159,13 +160,17 @@ impl<I: Isa> Visit<I> for FindAny {
             }
             let candidates = packet.triangle(block, corner);
             let mut left = candidates.mask & !found;
+            if left == 0 {
+                continue;
+            }
+            let corners = candidates.stored();
             while left != 0 {
                 let lane = left.trailing_zeros() as usize;
                 left &= left - 1;
                 if self.sources[lane] == id {
                     continue;
                 }
-                let t = candidates.decide(lane, packet.speeds[lane]);
+                let t = corners.decide(lane, packet.speeds[lane]);
                 found |= u32::from(t.is_some_and(|t| 0.0 < t && t < packet.ends[lane])) << lane;
             }
         }

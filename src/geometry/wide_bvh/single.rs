@@ -3,7 +3,7 @@
 use crate::geometry::Nearest;
 use crate::geometry::lanes::{Isa, Lanes};
 use crate::geometry::triangle::{Axes, CERTAIN, exact};
-use crate::geometry::wide_bvh::{BLOCK, Block, BoxRay, LEAF, Node, WIDTH, WideBvh};
+use crate::geometry::wide_bvh::{Block, BoxRay, LEAF, Node, WIDTH, WideBvh};
 use crate::math::Ray;
 
 /// Seven children a level may wait, and the builder keeps the tree below 36 levels.
@@ -55,10 +55,11 @@ impl<I: Isa> Visit<I> for TakeNearest<'_> {
         if left == 0 {
             return limit;
         }
+        let corners = candidates.stored();
         while left != 0 {
             let lane = left.trailing_zeros() as usize;
             left &= left - 1;
-            if let Some(t) = candidates.decide(lane, self.axes.speed) {
+            if let Some(t) = corners.decide(lane, self.axes.speed) {
                 self.nearest.offer(t, self.object, block.ids[lane]);
             }
         }
@@ -71,13 +72,17 @@ impl<I: Isa> Visit<I> for FindAny<'_> {
     fn visit(&mut self, block: &Block, limit: f32) -> f32 {
         let candidates = triangles::<I>(block, self.ray, &self.axes, limit);
         let mut left = candidates.mask;
+        if left == 0 {
+            return limit;
+        }
+        let corners = candidates.stored();
         while left != 0 {
             let lane = left.trailing_zeros() as usize;
             left &= left - 1;
             let id = block.ids[lane];
             let is_source =
                 self.ray.source.object == self.object && self.ray.source.primitive == id;
-            let Some(t) = candidates.decide(lane, self.axes.speed) else { continue };
+            let Some(t) = corners.decide(lane, self.axes.speed) else { continue };
             if 0.0 < t && t < self.ray.t_max && !is_source {
                 self.is_blocked = true;
                 return -1.0;
@@ -180,8 +185,7 @@ fn triangles<I: Isa>(block: &Block, ray: &Ray, axes: &Axes, limit: f32) -> Candi
     }
     let shear = [I::F4::splat(axes.shear[0]), I::F4::splat(axes.shear[1])];
     let [a, b, c] = corners;
-    let corners =
-        [sheared(a, origin, shear), sheared(b, origin, shear), sheared(c, origin, shear)];
+    let corners = [sheared(a, origin, shear), sheared(b, origin, shear), sheared(c, origin, shear)];
     Candidates::new(corners, I::F4::splat(1.0 / axes.speed), I::F4::splat(limit))
 }
 
@@ -229,15 +233,29 @@ impl<F: Lanes> Candidates<F> {
         Self { mask, corners }
     }
 
+    /// The corners in memory, for [`StoredCorners::decide`].
+    #[inline(always)]
+    pub(super) fn stored(&self) -> StoredCorners<F> {
+        let [a, b, c] = self.corners;
+        StoredCorners([
+            [a[0].stored(), a[1].stored(), a[2].stored()],
+            [b[0].stored(), b[1].stored(), b[2].stored()],
+            [c[0].stored(), c[1].stored(), c[2].stored()],
+        ])
+    }
+}
+
+/// Corners in sheared space, lane by lane.
+pub(super) struct StoredCorners<F: Lanes>([[F::Stored; 3]; 3]);
+
+impl<F: Lanes> StoredCorners<F> {
     /// The exact test of one lane.
     #[inline(always)]
     pub(super) fn decide(&self, lane: usize, speed: f32) -> Option<f32> {
         let mut corners = [[0.0; 3]; 3];
-        for (to, from) in corners.iter_mut().zip(&self.corners) {
-            for axis in 0..3 {
-                let mut lanes = [0.0; 16];
-                from[axis].store(&mut lanes);
-                to[axis] = lanes[lane];
+        for (to, from) in corners.iter_mut().zip(&self.0) {
+            for (to, from) in to.iter_mut().zip(from) {
+                *to = from[lane];
             }
         }
         let [a, b, c] = corners;

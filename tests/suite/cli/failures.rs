@@ -1,0 +1,271 @@
+//! What is wrong is said in one message, with the right exit status, and nothing is lost.
+
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+use super::{BALL, MESH, Place, Run};
+
+#[test]
+fn wrong_command_lines_are_status_2() {
+    let place = Place::with_ball();
+    place.write("a.png", b"as it was");
+    for arguments in [
+        &["render"][..],
+        &["render", "ball.toml"],
+        &["render", "ball.toml", "-o"],
+        &["render", "-o", "a.png"],
+        &["render", "ball.toml", "-o", "a.jpg"],
+        &["render", "ball.toml", "-o", "a"],
+        &["render", "ball.toml", "-o", "a.png.txt"],
+        &["render", "ball.toml", "-o", "a.png", "--samples", "0"],
+        &["render", "ball.toml", "-o", "a.png", "-s", "1048577"],
+        &["render", "ball.toml", "-o", "a.png", "-s", "many"],
+        &["render", "ball.toml", "-o", "a.png", "-s", "-1"],
+        &["render", "ball.toml", "-o", "a.png", "-s", "1.5"],
+        &["render", "ball.toml", "-o", "a.png", "--width", "0"],
+        &["render", "ball.toml", "-o", "a.png", "--height", "16385"],
+        &["render", "ball.toml", "-o", "a.png", "--seed", "4294967296"],
+        &["render", "ball.toml", "-o", "a.png", "--threads", "0"],
+        &["render", "ball.toml", "-o", "a.png", "--time", "nan"],
+        &["render", "ball.toml", "-o", "a.png", "--time", "-1"],
+        &["render", "ball.toml", "-o", "a.png", "--noise", "inf"],
+        &["render", "ball.toml", "-o", "a.png", "--accelerator", "octree"],
+        &["render", "ball.toml", "-o", "a.png", "--sample", "1"],
+        &["render", "ball.toml", "-o", "a.png", "--set"],
+        &["render", "ball.toml", "-o", "a.png", "--set", "render.samples"],
+        &["render", "ball.toml", "-o", "a.png", "--set", "render.samples=1.2.3"],
+        &["render", "ball.toml", "-o", "a.png", "--set", "render.samples=[1, 2"],
+        &["render", "ball.toml", "-o", "a.png", "--set", "render.sampels=4"],
+        &["render", "ball.toml", "-o", "a.png", "--set", "objects.bell.radius=4"],
+        &["render", "ball.toml", "-o", "a.png", "--set", "camera=4"],
+        &["render", "ball.toml", "-o", "a.png", "--set", "camera.eye.x=4"],
+        &["render", "ball.toml", "-o", "a.png", "extra"],
+        &["info"],
+        &["info", "ball.toml", "--yaml"],
+        &["verify"],
+        &["draw", "ball.toml"],
+    ] {
+        place.fails(2, arguments);
+    }
+    assert_eq!(place.read("a.png"), b"as it was", "the old file");
+}
+
+#[test]
+fn anything_else_is_status_1_and_says_where() {
+    let place = Place::with_ball();
+    place.write("a.png", b"as it was");
+    place.write("folder/inside", b"");
+    place.write("unknown.toml", BALL.replace("samples = 4", "smaples = 4").as_bytes());
+    place.write("range.toml", BALL.replace("radius = 1.0", "radius = -1.0").as_bytes());
+    place.write("broken.toml", b"[camera\neye = 1\n");
+    place.write("name.toml", BALL.replace("material = \"clay\"", "material = \"cly\"").as_bytes());
+    place.write(
+        "mesh.toml",
+        format!("{BALL}[[objects]]\ntype = 'mesh'\nfile = 'no.obj'\n").as_bytes(),
+    );
+    place.write("bad.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+    place.write(
+        "inside.toml",
+        format!("{BALL}[[objects]]\ntype = 'mesh'\nfile = 'bad.obj'\n").as_bytes(),
+    );
+    for (file, says) in [
+        ("missing.toml", &["missing.toml: no such file"][..]),
+        ("folder", &["folder: is a folder"]),
+        ("unknown.toml", &["unknown.toml:4:1:", "smaples", "samples"]),
+        ("range.toml", &["range.toml:34:10:", "objects.ball.radius", "above 0"]),
+        ("broken.toml", &["broken.toml:1:"]),
+        ("name.toml", &["name.toml:35:12:", "cly", "clay"]),
+        ("mesh.toml", &["mesh.toml:44:8:", "no.obj"]),
+        ("bad.obj", &["bad.obj: line 4", "9", "3"]),
+        ("inside.toml", &["inside.toml:44:8:", "bad.obj: line 4"]),
+    ] {
+        let error = place.fails(1, &["render", file, "-o", "a.png"]);
+        for part in says {
+            assert!(error.contains(part), "{file}: {error:?} does not say {part:?}");
+        }
+        assert_eq!(error.lines().count(), 1, "{file}: {error}");
+        assert_eq!(error, place.fails(1, &["info", file]), "info says the same");
+    }
+    for (set, says) in [
+        ("render.samples=0", "render.samples"),
+        ("objects.ball.radius=big", "objects.ball.radius"),
+        ("objects.ball.material=cly", "objects.ball.material"),
+        ("camera.eye=[0, 0, 0]", "camera.target"),
+    ] {
+        let error = place.fails(1, &["render", "ball.toml", "-o", "a.png", "--set", set]);
+        assert!(error.contains("--set") && error.contains(says), "{set}: {error}");
+    }
+    assert_eq!(place.read("a.png"), b"as it was", "the old file");
+}
+
+#[test]
+fn outputs_that_cannot_be_written_are_named_before_or_after() {
+    let place = Place::with_ball();
+    place.write("folder.png/inside", b"");
+    place.write("file", b"");
+    for out in ["nowhere/a.png", "folder.png", "file/a.png", "/proc/a.png"] {
+        let error = place.fails(1, &["render", "ball.toml", "-o", out]);
+        let place_name = out.split('/').next().unwrap();
+        assert!(error.contains(place_name), "{out}: {error}");
+    }
+}
+
+/// A disk that fills up, by a limit on the length of files.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_leaves_the_old_file_and_nothing_else() {
+    let place = Place::with_ball();
+    place.write("a.exr", b"as it was");
+    let script = "trap '' XFSZ; ulimit -f 1; exec \"$0\" render ball.toml -o a.exr --width 200";
+    let mut command = std::process::Command::new("sh");
+    command.args(["-c", script, env!("CARGO_BIN_EXE_penumbra")]).current_dir(place.path(""));
+    let run = Run::of(&mut command);
+    assert_eq!(run.status, Some(1), "{}", run.stderr);
+    assert!(run.stderr.contains("a.exr: cannot be written"), "{}", run.stderr);
+    assert_eq!(place.read("a.exr"), b"as it was", "the old file");
+    assert_eq!(files_in(&place), ["a.exr", "ball.toml"], "nothing is left behind");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_killed_run_leaves_the_old_file_or_the_new_one() {
+    let place = Place::with_ball();
+    let new = place.ball_png("a.png", &[]);
+    let mut n_old = 0;
+    for i in 0..24 {
+        place.write("a.png", b"as it was");
+        let mut child = place
+            .command()
+            .args(["render", "ball.toml", "-o", "a.png"])
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let start = Instant::now();
+        while start.elapsed() < Duration::from_micros(800 * i) {
+            std::thread::yield_now();
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let found = place.read("a.png");
+        let is_old = found == b"as it was";
+        n_old += usize::from(is_old);
+        assert!(is_old || found == new, "{} bytes after {i}", found.len());
+    }
+    assert!(n_old > 0, "no run was killed in time");
+}
+
+#[test]
+fn special_files_are_refused_at_once() {
+    let place = Place::with_ball();
+    place.write("folder/inside", b"");
+    let scene = |file: &str| format!("{BALL}[[objects]]\ntype = 'mesh'\nfile = '{file}'\n");
+    let fifo = place.path("fifo");
+    let made = std::process::Command::new("mkfifo").arg(&fifo).status().unwrap();
+    assert!(made.success(), "mkfifo");
+    for file in ["/dev/null", "/dev/zero", "/dev/random", "folder", "fifo"] {
+        let error = place.fails(1, &["info", file]);
+        assert!(error.contains(file), "{file}: {error}");
+        place.write("s.toml", scene(file).as_bytes());
+        let error = place.fails(1, &["info", "s.toml"]);
+        let is_located =
+            error.contains("s.toml:44:8: objects.object-1.file") && error.contains(file);
+        assert!(is_located, "{file}: {error}");
+    }
+}
+
+#[test]
+fn control_characters_reach_no_terminal() {
+    // `Run::of` looks for them in everything that is printed.
+    let place = Place::with_ball();
+    let bad = "x\u{1b}[31m\u{7}\u{202e}\u{9b}";
+    place.run(&["info", bad]);
+    place.run(&["render", bad, "-o", "a.png"]);
+    place.run(&["render", "ball.toml", "-o", bad]);
+    place.run(&["render", "ball.toml", "-o", &format!("{bad}/a.png")]);
+    place.run(&["render", "ball.toml", "-o", &format!("/proc/{bad}.png")]);
+    place.run(&["render", "ball.toml", "-o", "a.png", bad]);
+    place.run(&["render", "ball.toml", "-o", "a.png", "--set", bad]);
+    place.run(&["render", "ball.toml", "-o", "a.png", "--set", &format!("render.samples={bad}")]);
+    place.run(&["render", "ball.toml", "-o", "a.png", "--accelerator", bad]);
+    place.run(&["verify", bad]);
+    place.run(&[&format!("--{bad}")]);
+    let escaped = "x\\u001b[31m\\u0007\\u009b";
+    for scene in [
+        format!("\"{escaped}\" = 1\n"),
+        format!("{BALL}[[objects]]\nname = \"{escaped}\"\ntype = \"mesh\"\nfile = \"{escaped}\"\n"),
+        format!("{BALL}[[objects]]\nname = \"{escaped}\"\ntype = \"{escaped}\"\n"),
+        format!("{BALL}[[objects]]\ntype = \"mesh\"\nfile = \"m.obj\"\nmaterial = \"{escaped}\"\n"),
+        format!("{BALL}[[textures]]\nname = \"t\"\ntype = \"image\"\nfile = \"{escaped}\"\n"),
+        format!("[camera]\neye = {bad}\n"),
+    ] {
+        place.write("s.toml", scene.as_bytes());
+        place.fails(1, &["info", "s.toml"]);
+    }
+    for mesh in [
+        format!("mtllib {bad}.mtl\nusemtl {bad}\n{MESH}"),
+        format!("{bad} 1\n{MESH}"),
+        format!("v {bad}\n"),
+        format!("f {bad}\n"),
+    ] {
+        place.write("m.obj", mesh.as_bytes());
+        place.write("m.mtl", format!("newmtl {bad}\nKd {bad}\nmap_Kd {bad}\n{bad}\n").as_bytes());
+        place.run(&["info", "m.obj"]);
+    }
+    place.write(&format!("{bad}.obj"), MESH.as_bytes());
+    place.run(&[
+        "render",
+        &format!("{bad}.obj"),
+        "-o",
+        &format!("{bad}.png"),
+        "--json",
+        "-s",
+        "1",
+        "--width",
+        "9",
+    ]);
+    place.run(&["verify", &format!("{bad}.png")]);
+}
+
+#[test]
+fn a_result_that_reaches_nobody_is_an_error_and_no_panic() {
+    let place = Place::with_ball();
+    for arguments in [&["info", "ball.toml"][..], &["info", "ball.toml", "--json"]] {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let run = place.command().args(arguments).stdout(full).output().unwrap();
+        let error = String::from_utf8(run.stderr).unwrap();
+        assert_eq!(run.status.code(), Some(1), "{error}");
+        assert!(error.contains("standard output") && !error.contains("panicked"), "{error}");
+    }
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let status = place.command().args(["info", "gone.toml"]).stderr(full).status().unwrap();
+    assert_eq!(status.code(), Some(1), "an error that nobody hears");
+}
+
+#[test]
+fn without_a_display_the_window_says_so_in_one_line() {
+    let place = Place::with_ball();
+    for arguments in [&[][..], &["ball.toml"]] {
+        let run = place.run(arguments);
+        assert_eq!(run.status, Some(1), "{}", run.stderr);
+        assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
+        assert!(run.stderr.contains("penumbra render"), "{}", run.stderr);
+    }
+}
+
+#[test]
+fn help_and_version_are_no_errors() {
+    let place = Place::new();
+    for arguments in [&["--help"][..], &["render", "--help"], &["info", "-h"], &["--version"]] {
+        let run = place.ok(arguments);
+        assert!(run.stdout.contains("penumbra"), "{}", run.stdout);
+        assert_eq!(run.stderr, "", "{arguments:?}");
+    }
+}
+
+fn files_in(place: &Place) -> Vec<String> {
+    let entries = std::fs::read_dir(place.path("")).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
