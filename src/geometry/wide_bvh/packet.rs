@@ -11,7 +11,7 @@
 use crate::geometry::Nearest;
 use crate::geometry::lanes::{Isa, Lanes};
 use crate::geometry::triangle::Axes;
-use crate::geometry::wide_bvh::single::{self, STACK, meet, sheared};
+use crate::geometry::wide_bvh::single::{self, Candidates, STACK, sheared};
 use crate::geometry::wide_bvh::{BLOCK, Block, BoxRay, LEAF, Node, WIDTH, WideBvh};
 use crate::math::RayBatch;
 
@@ -67,8 +67,7 @@ pub(super) fn occluded_batch<I: Isa>(
         match Packet::<I>::new(bvh, rays, first, n, &ends) {
             Some(mut packet) => {
                 let sources = sources(rays, first, n, object);
-                let mut any = FindAny { sources, has_source: false, hits: 0 };
-                any.has_source = any.sources.iter().any(|source| *source != u32::MAX);
+                let mut any = FindAny { sources, hits: 0 };
                 packet.walk(bvh, &mut any);
                 for (lane, blocked) in blocked.iter_mut().enumerate() {
                     *blocked |= any.hits >> lane & 1 == 1;
@@ -112,7 +111,6 @@ struct TakeNearest<'a> {
 
 struct FindAny {
     sources: [u32; LANES],
-    has_source: bool,
     hits: u32,
 }
 
@@ -125,28 +123,26 @@ impl<I: Isa> Visit<I> for TakeNearest<'_> {
             if corner > 0 && id == block.ids[corner - 1] {
                 break;
             }
-            let (mask, t) = packet.triangle(block, corner);
-            if mask == 0 {
+            let candidates = packet.triangle(block, corner);
+            if candidates.mask == 0 {
                 continue;
             }
-            let mask = mask & t.le(packet.limit) & I::F16::splat(0.0).lt(t);
-            if mask == 0 {
-                continue;
-            }
-            let (mut ts, mut limits) = ([0.0; LANES], [0.0; LANES]);
-            t.store(&mut ts);
+            let mut limits = [0.0; LANES];
             packet.limit.store(&mut limits);
-            let mut left = mask;
+            let mut left = candidates.mask;
             while left != 0 {
                 let lane = left.trailing_zeros() as usize;
                 left &= left - 1;
-                if self.sources[lane] != id {
-                    self.nearest[lane].offer(ts[lane], self.object, id);
+                if self.sources[lane] == id {
+                    continue;
+                }
+                if let Some(t) = candidates.decide(lane, packet.speeds[lane]) {
+                    self.nearest[lane].offer(t, self.object, id);
                     limits[lane] = self.nearest[lane].t();
                 }
             }
             packet.limit = I::F16::load(&limits);
-            any |= mask;
+            any |= candidates.mask;
         }
         any != 0
     }
@@ -161,23 +157,24 @@ impl<I: Isa> Visit<I> for FindAny {
             if corner > 0 && id == block.ids[corner - 1] {
                 break;
             }
-            let (mut mask, t) = packet.triangle(block, corner);
-            if mask == 0 {
-                continue;
-            }
-            mask &= t.lt(packet.limit) & I::F16::splat(0.0).lt(t);
-            if mask != 0 && self.has_source {
-                for lane in 0..LANES {
-                    if self.sources[lane] == id {
-                        mask &= !(1 << lane);
-                    }
+            let candidates = packet.triangle(block, corner);
+            let mut left = candidates.mask & !found;
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize;
+                left &= left - 1;
+                if self.sources[lane] == id {
+                    continue;
                 }
+                let t = candidates.decide(lane, packet.speeds[lane]);
+                found |= u32::from(t.is_some_and(|t| 0.0 < t && t < packet.ends[lane])) << lane;
             }
-            found |= mask;
+        }
+        if found == 0 {
+            return false;
         }
         self.hits |= found;
         packet.limit = packet.limit.blend(I::F16::splat(-1.0), found);
-        found != 0
+        true
     }
 }
 
@@ -189,7 +186,12 @@ struct Packet<I: Isa> {
     scaled_origin: [I::F16; 3],
     /// Axis order of the triangle test, the same for all.
     order: [usize; 3],
-    shear: [I::F16; 3],
+    shear: [I::F16; 2],
+    /// The directions' largest components, and 1 over them.
+    speeds: [f32; LANES],
+    pace: I::F16,
+    /// Where the rays end, and where what is of interest does.
+    ends: [f32; LANES],
     limit: I::F16,
     pad: f32,
     /// Interval test along each axis.
@@ -261,16 +263,27 @@ impl<I: Isa> Packet<I> {
             scaled_origin[axis] = origin[axis].mul(reciprocal[axis]);
             intervals[axis] = Interval::new(axis, reciprocal[axis], origin[axis], pad);
         }
-        let depth = direction[order[2]];
-        let shear =
-            [direction[order[0]].div(depth), direction[order[1]].div(depth), one.div(depth)];
-        let limit = I::F16::load(ends);
-        Some(Self { origin, reciprocal, scaled_origin, order, shear, limit, pad, intervals })
+        let speed = direction[order[2]];
+        let mut speeds = [0.0; LANES];
+        speed.store(&mut speeds);
+        Some(Self {
+            origin,
+            reciprocal,
+            scaled_origin,
+            order,
+            shear: [direction[order[0]].div(speed), direction[order[1]].div(speed)],
+            speeds,
+            pace: one.div(speed),
+            ends: *ends,
+            limit: I::F16::load(ends),
+            pad,
+            intervals,
+        })
     }
 
-    /// The watertight test of sixteen rays against one triangle of a block.
+    /// Sixteen rays against one triangle of a block.
     #[inline(always)]
-    fn triangle(&self, block: &Block, lane: usize) -> (u32, I::F16) {
+    fn triangle(&self, block: &Block, lane: usize) -> Candidates<I::F16> {
         let zero = I::F16::splat(0.0);
         let (mut origin, mut corners) = ([zero; 3], [[zero; 3]; 3]);
         for axis in 0..3 {
@@ -282,9 +295,9 @@ impl<I: Isa> Packet<I> {
         }
         let [a, b, c] = corners;
         let shear = self.shear;
-        let (a, b, c) =
-            (sheared(a, origin, shear), sheared(b, origin, shear), sheared(c, origin, shear));
-        meet(a, b, c, shear[2])
+        let corners =
+            [sheared(a, origin, shear), sheared(b, origin, shear), sheared(c, origin, shear)];
+        Candidates::new(corners, self.pace, self.limit)
     }
 
     /// Hands the blocks that some ray may touch to a visitor, about near to far.

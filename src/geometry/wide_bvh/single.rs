@@ -2,7 +2,7 @@
 
 use crate::geometry::Nearest;
 use crate::geometry::lanes::{Isa, Lanes};
-use crate::geometry::triangle::{Axes, exact_edges};
+use crate::geometry::triangle::{Axes, CERTAIN, exact};
 use crate::geometry::wide_bvh::{BLOCK, Block, BoxRay, LEAF, Node, WIDTH, WideBvh};
 use crate::math::Ray;
 
@@ -50,20 +50,17 @@ pub(super) fn blocked<I: Isa>(bvh: &WideBvh, ray: &Ray, object: u32) -> bool {
 impl<I: Isa> Visit<I> for TakeNearest<'_> {
     #[inline(always)]
     fn visit(&mut self, block: &Block, limit: f32) -> f32 {
-        let (mask, t) = triangles::<I>(block, self.ray, &self.axes);
-        if mask == 0 {
+        let candidates = triangles::<I>(block, self.ray, &self.axes, limit);
+        let mut left = candidates.mask;
+        if left == 0 {
             return limit;
         }
-        let mut candidates = mask & t.le(I::F4::splat(limit)) & I::F4::splat(0.0).lt(t);
-        if candidates == 0 {
-            return limit;
-        }
-        let mut ts = [0.0; BLOCK];
-        t.store(&mut ts);
-        while candidates != 0 {
-            let lane = candidates.trailing_zeros() as usize;
-            candidates &= candidates - 1;
-            self.nearest.offer(ts[lane], self.object, block.ids[lane]);
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize;
+            left &= left - 1;
+            if let Some(t) = candidates.decide(lane, self.axes.speed) {
+                self.nearest.offer(t, self.object, block.ids[lane]);
+            }
         }
         self.nearest.t()
     }
@@ -72,15 +69,16 @@ impl<I: Isa> Visit<I> for TakeNearest<'_> {
 impl<I: Isa> Visit<I> for FindAny<'_> {
     #[inline(always)]
     fn visit(&mut self, block: &Block, limit: f32) -> f32 {
-        let (mask, t) = triangles::<I>(block, self.ray, &self.axes);
-        if mask == 0 {
-            return limit;
-        }
-        let mut candidates = mask & t.lt(I::F4::splat(self.ray.t_max)) & I::F4::splat(0.0).lt(t);
-        while candidates != 0 {
-            let id = block.ids[candidates.trailing_zeros() as usize];
-            candidates &= candidates - 1;
-            if self.ray.source.object != self.object || self.ray.source.primitive != id {
+        let candidates = triangles::<I>(block, self.ray, &self.axes, limit);
+        let mut left = candidates.mask;
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize;
+            left &= left - 1;
+            let id = block.ids[lane];
+            let is_source =
+                self.ray.source.object == self.object && self.ray.source.primitive == id;
+            let Some(t) = candidates.decide(lane, self.axes.speed) else { continue };
+            if 0.0 < t && t < self.ray.t_max && !is_source {
                 self.is_blocked = true;
                 return -1.0;
             }
@@ -168,81 +166,91 @@ fn walk<I: Isa, V: Visit<I>>(bvh: &WideBvh, ray: &Ray, mut limit: f32, visitor: 
     }
 }
 
-/// The watertight test of one ray against four triangles: where it is met, and the parameters.
+/// One ray against four triangles.
 #[inline(always)]
-fn triangles<I: Isa>(block: &Block, ray: &Ray, axes: &Axes) -> (u32, I::F4) {
+fn triangles<I: Isa>(block: &Block, ray: &Ray, axes: &Axes, limit: f32) -> Candidates<I::F4> {
     let zero = I::F4::splat(0.0);
-    let (mut origin, mut shear) = ([zero; 3], [zero; 3]);
-    let mut corners = [[zero; 3]; 3];
+    let (mut origin, mut corners) = ([zero; 3], [[zero; 3]; 3]);
     for axis in 0..3 {
         let k = axes.order[axis];
         origin[axis] = I::F4::splat(ray.origin[k]);
-        shear[axis] = I::F4::splat(axes.shear[axis]);
         for (to, from) in corners.iter_mut().zip(&block.corners) {
             to[axis] = I::F4::load(&from[k]);
         }
     }
+    let shear = [I::F4::splat(axes.shear[0]), I::F4::splat(axes.shear[1])];
     let [a, b, c] = corners;
-    let (a, b, c) =
-        (sheared(a, origin, shear), sheared(b, origin, shear), sheared(c, origin, shear));
-    meet(a, b, c, shear[2])
+    let corners =
+        [sheared(a, origin, shear), sheared(b, origin, shear), sheared(c, origin, shear)];
+    Candidates::new(corners, I::F4::splat(1.0 / axes.speed), I::F4::splat(limit))
 }
 
-/// A corner relative to the ray's origin, sheared so that the direction is (0, 0, 1); z is not yet
-/// scaled.
+/// A corner relative to the ray's origin, sheared so that the direction is along z.
 #[inline(always)]
-pub(super) fn sheared<F: Lanes>(p: [F; 3], origin: [F; 3], shear: [F; 3]) -> [F; 3] {
+pub(super) fn sheared<F: Lanes>(p: [F; 3], origin: [F; 3], shear: [F; 2]) -> [F; 3] {
     let z = p[2].sub(origin[2]);
     [p[0].sub(origin[0]).sub(shear[0].mul(z)), p[1].sub(origin[1]).sub(shear[1].mul(z)), z]
 }
 
-/// The rest of the test, operation for operation as [`crate::geometry::triangle`] has it.
-#[inline(always)]
-pub(super) fn meet<F: Lanes>(a: [F; 3], b: [F; 3], c: [F; 3], scale: F) -> (u32, F) {
-    let mut u = c[0].mul(b[1]).sub(c[1].mul(b[0]));
-    let mut v = a[0].mul(c[1]).sub(a[1].mul(c[0]));
-    let mut w = b[0].mul(a[1]).sub(b[1].mul(a[0]));
-    let zero = F::splat(0.0);
-    let on_edge = u.eq(zero) | v.eq(zero) | w.eq(zero);
-    if on_edge != 0 {
-        [u, v, w] = repaired([a, b, c], [u, v, w], on_edge);
-    }
-    let negative = u.lt(zero) | v.lt(zero) | w.lt(zero);
-    let positive = zero.lt(u) | zero.lt(v) | zero.lt(w);
-    let det = u.add(v).add(w);
-    let mask = F::ALL & !(negative & positive) & !det.eq(zero);
-    if mask == 0 {
-        return (0, zero);
-    }
-    let sum = u.mul(scale.mul(a[2])).add(v.mul(scale.mul(b[2]))).add(w.mul(scale.mul(c[2])));
-    (mask, sum.div(det))
+/// Pairs of a ray and a triangle that may meet before the limit: the rest certainly does not.
+///
+/// The corners are those of [`crate::geometry::triangle`] to the bit, so that what decides is the
+/// same everywhere: [`exact`].
+pub(super) struct Candidates<F> {
+    pub(super) mask: u32,
+    corners: [[F; 3]; 3],
 }
 
-/// Edge functions with exact signs in the lanes that lie on an edge.
-#[cold]
-#[inline(never)]
-fn exact_lanes(corners: [[[f32; 16]; 2]; 3], edges: &mut [[f32; 16]; 3], lanes: u32) {
-    let mut lanes = lanes;
-    while lanes != 0 {
-        let lane = lanes.trailing_zeros() as usize;
-        lanes &= lanes - 1;
-        let [a, b, c] = corners.map(|corner| [corner[0][lane], corner[1][lane]]);
-        let exact = exact_edges(a, b, c);
-        for edge in 0..3 {
-            edges[edge][lane] = exact[edge];
+impl<F: Lanes> Candidates<F> {
+    /// `pace` is 1 over the direction's largest component.
+    #[inline(always)]
+    pub(super) fn new(corners: [[F; 3]; 3], pace: F, limit: F) -> Self {
+        let [a, b, c] = corners;
+        let zero = F::splat(0.0);
+        let (mut below, mut above) = (0, 0);
+        let (is_below, is_above) = certain_signs(c, b);
+        below |= is_below;
+        above |= is_above;
+        let (is_below, is_above) = certain_signs(a, c);
+        below |= is_below;
+        above |= is_above;
+        let (is_below, is_above) = certain_signs(b, a);
+        below |= is_below;
+        above |= is_above;
+        let mut mask = F::ALL & !(below & above);
+        if mask != 0 {
+            // The parameter lies between those of the corners, give or take the rounding.
+            let (t_a, t_b, t_c) = (a[2].mul(pace), b[2].mul(pace), c[2].mul(pace));
+            let least = t_a.min(t_b).min(t_c);
+            let slack = F::splat(1.0 - 1e-6).mul(least);
+            mask &= least.min(slack).le(limit) & zero.le(limit);
+            mask &= zero.lt(t_a.max(t_b).max(t_c));
         }
+        Self { mask, corners }
+    }
+
+    /// The exact test of one lane.
+    #[inline(always)]
+    pub(super) fn decide(&self, lane: usize, speed: f32) -> Option<f32> {
+        let mut corners = [[0.0; 3]; 3];
+        for (to, from) in corners.iter_mut().zip(&self.corners) {
+            for axis in 0..3 {
+                let mut lanes = [0.0; 16];
+                from[axis].store(&mut lanes);
+                to[axis] = lanes[lane];
+            }
+        }
+        let [a, b, c] = corners;
+        exact(a, b, c, speed)
     }
 }
 
+/// Where the area between the rays and the edges is certainly below 0, and where above.
 #[inline(always)]
-fn repaired<F: Lanes>(corners: [[F; 3]; 3], edges: [F; 3], lanes: u32) -> [F; 3] {
-    let (mut stored, mut stored_edges) = ([[[0.0; 16]; 2]; 3], [[0.0; 16]; 3]);
-    for i in 0..3 {
-        corners[i][0].store(&mut stored[i][0]);
-        corners[i][1].store(&mut stored[i][1]);
-        edges[i].store(&mut stored_edges[i]);
-    }
-    exact_lanes(stored, &mut stored_edges, lanes);
-    let [u, v, w] = &stored_edges;
-    [F::load(u), F::load(v), F::load(w)]
+fn certain_signs<F: Lanes>(p: [F; 3], q: [F; 3]) -> (u32, u32) {
+    let zero = F::splat(0.0);
+    let product = p[0].mul(q[1]);
+    let value = product.sub(p[1].mul(q[0]));
+    let error = F::splat(CERTAIN).mul(product.max(zero.sub(product)));
+    (value.lt(zero.sub(error)), error.lt(value))
 }
