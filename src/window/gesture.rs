@@ -31,7 +31,11 @@ impl Gesture {
                 Event::Key { pressed, repeat, .. } => *pressed && !*repeat,
                 _ => false,
             });
-            (input.time, input.is_scrolling(), begins)
+            let scrolled = input
+                .events
+                .iter()
+                .any(|event| matches!(event, Event::MouseWheel { .. } | Event::Zoom(_)));
+            (input.time, scrolled, begins)
         });
         let scroll_begins = scrolled && REST_SECS < time - self.last_scroll;
         if scrolled {

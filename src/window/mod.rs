@@ -50,7 +50,12 @@ const FIRST_SCENE: &str = "final";
 /// Why the window could not be shown.
 #[derive(Debug, thiserror::Error)]
 pub enum WindowError {
-    /// There is no display, or it refuses.
+    /// No display to open a window on.
+    #[error(
+        "there is no display to open a window on; `penumbra render` makes pictures without one"
+    )]
+    NoDisplay,
+    /// The display refuses.
     #[error("cannot open a window: {reason}; `penumbra render` makes pictures without one")]
     NoWindow {
         /// What the system said.
@@ -85,8 +90,10 @@ pub fn run(file: Option<PathBuf>) -> Result<(), WindowError> {
             .unwrap_or_default();
         Ok(Box::new(app::App::new(&cc.egui_ctx, remembered, first, eframe::storage_dir(APP_ID))?))
     });
-    eframe::run_native(APP_ID, options, create)
-        .map_err(|error| WindowError::NoWindow { reason: error.to_string() })
+    eframe::run_native(APP_ID, options, create).map_err(|error| match error {
+        eframe::Error::WinitEventLoop(_) => WindowError::NoDisplay,
+        other => WindowError::NoWindow { reason: other.to_string() },
+    })
 }
 
 #[cfg(test)]

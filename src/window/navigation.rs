@@ -2,7 +2,7 @@
 
 use crate::scene::description::{CameraDescription, Triple};
 use crate::scene::orbit;
-use egui::{Key, PointerButton, Response, Ui, Vec2};
+use egui::{Event, Key, MouseWheelUnit, PointerButton, Response, Ui, Vec2};
 
 /// Degrees of orbit for one point of dragging.
 const ORBIT_DEG_PER_POINT: f64 = 0.4;
@@ -10,6 +10,8 @@ const ORBIT_DEG_PER_POINT: f64 = 0.4;
 const LOOK_DEG_PER_POINT: f64 = 0.15;
 /// Logarithm of the distance for one point of scrolling: a notch is about a tenth.
 const DOLLY_PER_POINT: f64 = 0.0022;
+/// Points that one notch of a wheel stands for.
+const POINTS_PER_NOTCH: f64 = 48.0;
 /// Flying covers this share of the distance to the pivot in a second.
 const FLY_PER_SECOND: f64 = 0.8;
 
@@ -69,11 +71,25 @@ impl Navigation {
         *camera = orbit::panned(camera, -f64::from(motion.x) * unit, f64::from(motion.y) * unit);
     }
 
+    /// The wheel and the pinch, as they come: egui's smoothed scrolling goes on after the hand has
+    /// stopped, and would move the camera when the cursor comes over from a panel.
     fn wheel(&self, ui: &Ui, camera: &mut CameraDescription) {
-        let (scrolled, pinched) =
-            ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-        let factor = (-f64::from(scrolled) * DOLLY_PER_POINT).exp() / f64::from(pinched);
-        if factor != 1.0 && factor.is_finite() {
+        let factor = ui.input(|input| {
+            input.events.iter().fold(1.0, |factor, event| match event {
+                Event::MouseWheel { unit, delta, .. } => {
+                    let points = f64::from(delta.y)
+                        * match unit {
+                            MouseWheelUnit::Point => 1.0,
+                            MouseWheelUnit::Line => POINTS_PER_NOTCH,
+                            MouseWheelUnit::Page => POINTS_PER_NOTCH * 8.0,
+                        };
+                    factor * (-points * DOLLY_PER_POINT).exp()
+                }
+                Event::Zoom(pinched) => factor / f64::from(*pinched),
+                _ => factor,
+            })
+        });
+        if factor != 1.0 && factor.is_finite() && 0.0 < factor {
             *camera = orbit::dollied(camera, self.pivot(camera), factor);
         }
     }

@@ -237,3 +237,31 @@ fn a_mesh_named_by_an_edit_is_loaded_and_rendered() {
     let is_mesh = matches!(scene.objects[0].instance.shape(), crate::geometry::Shape::Mesh(_));
     assert!(is_mesh, "the old shape is still rendered");
 }
+
+#[test]
+fn the_wheel_moves_the_camera_over_the_picture_and_nowhere_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&scene_file(folder.path()), [1024.0, 700.0]);
+    let picture = harness.get_by_role_and_label(Role::Canvas, "Picture").rect();
+    let before = harness.state().document.description.camera.clone();
+    let turn = |harness: &mut Harness<'_, App>, at: egui::Pos2| {
+        harness.hover_at(at);
+        harness.run_steps(2);
+        harness.event(egui::Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Line,
+            delta: egui::vec2(0.0, 1.0),
+            source: egui::MouseWheelSource::Wheel,
+            phase: egui::TouchPhase::Move,
+            modifiers: egui::Modifiers::NONE,
+        });
+        harness.run_steps(1);
+        // The cursor comes back over the picture while the panel still scrolls.
+        harness.hover_at(picture.center());
+        harness.run_steps(4);
+    };
+    turn(&mut harness, picture.right_center() + egui::vec2(100.0, 0.0));
+    assert_eq!(harness.state().document.description.camera, before, "the panel's wheel moved it");
+    turn(&mut harness, picture.center());
+    let after = &harness.state().document.description.camera;
+    assert!(after.eye[2] < before.eye[2] * 0.95, "not nearer: {:?}", after.eye);
+}
