@@ -12,10 +12,13 @@ use penumbra::scene::assets::{Assets, MeshAsset, MeshKey};
 use penumbra::scene::image::Image;
 use penumbra::scene::resolve;
 
+/// Makes a mesh.
+pub(crate) type MakeMesh = fn() -> Mesh;
+
 /// What a scene's files hold: meshes and images by the names that the text gives them.
 #[derive(Default)]
 pub(crate) struct Files {
-    pub(crate) meshes: Vec<(&'static str, fn() -> Mesh)>,
+    pub(crate) meshes: Vec<(&'static str, MakeMesh)>,
     pub(crate) images: Vec<(&'static str, Image)>,
 }
 
