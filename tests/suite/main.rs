@@ -3,4 +3,5 @@
 mod analytic;
 mod common;
 mod density;
+mod noise;
 mod oracle;
