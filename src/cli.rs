@@ -73,8 +73,8 @@ pub struct RenderArguments {
     /// Set a parameter of the scene, as camera.aperture_radius=0.1; may be repeated
     #[arg(long = "set", value_name = "PATH=VALUE", value_parser = Override::parse)]
     sets: Vec<Override>,
-    /// How rays find what they meet: kd-tree, kd-midpoint or brute-force; changes no pixel
-    #[arg(long, value_name = "NAME", value_parser = accelerator, default_value = "kd-tree")]
+    /// How rays find what they meet: wide-bvh, kd-tree, kd-midpoint or brute-force; changes no pixel
+    #[arg(long, value_name = "NAME", value_parser = accelerator, default_value = "wide-bvh")]
     accelerator: AcceleratorKind,
     /// No progress and no warnings
     #[arg(long)]

@@ -27,3 +27,5 @@ pub mod loader;
 pub mod session;
 
 pub mod cli;
+#[cfg(feature = "window")]
+pub mod window;

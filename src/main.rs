@@ -23,7 +23,12 @@ fn open_window(_: Arguments) -> ExitCode {
 }
 
 #[cfg(feature = "window")]
-fn open_window(_: Arguments) -> ExitCode {
-    eprintln!("error: this build has no window; use `penumbra render FILE -o OUT`");
-    ExitCode::FAILURE
+fn open_window(arguments: Arguments) -> ExitCode {
+    match penumbra::window::run(arguments.file) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
 }

@@ -43,8 +43,7 @@ pub fn map_to_srgb8(
 /// Black for what is negative or no number, a large number for what is infinite.
 #[inline(always)]
 fn finite_light(x: f32) -> f32 {
-    // `max` and `min` drop NaN.
-    x.max(0.0).min(1e30)
+    if x > 0.0 { if x < 1e30 { x } else { 1e30 } } else { 0.0 }
 }
 
 /// Fit of the ACES reference rendering transform and output transform for sRGB displays.
@@ -61,7 +60,7 @@ fn aces(c: [f32; 3]) -> [f32; 3] {
     let curve = |v: f32| {
         let v = v.min(1e15);
         let a = v * (v + 0.024_578_6) - 0.000_090_537;
-        let b = v * (0.983_729 * v + 0.432_951_0) + 0.238_081;
+        let b = v * (0.983_729 * v + 0.432_951) + 0.238_081;
         a / b
     };
     multiply(&OUTPUT, multiply(&INPUT, c).map(curve))
@@ -142,7 +141,7 @@ impl Encoder {
 
     #[inline(always)]
     fn encode(&self, linear: f32) -> u8 {
-        let linear = linear.max(0.0).min(1.0);
+        let linear = if linear > 0.0 { linear.min(1.0) } else { 0.0 };
         let mut byte = self.starts[(linear * 1024.0) as usize];
         while self.thresholds[usize::from(byte)] <= linear {
             byte += 1;

@@ -8,7 +8,7 @@ use crate::mesh::Mesh;
 
 /// A curtain 4 wide and 12 high in the plane z = 0, its hem on y = 0: folds that open downwards.
 pub(crate) fn curtain() -> Mesh {
-    let (n_across, n_up) = (132, 26);
+    let (n_across, n_up) = (134, 26);
     let mut mesh = Mesh::new(3);
     let rows: Vec<Vec<u32>> = (0..=n_up)
         .map(|j| {

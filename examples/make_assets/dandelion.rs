@@ -8,7 +8,7 @@ use crate::hash::unit;
 use crate::mesh::Mesh;
 
 const N_SEEDS: u32 = 170;
-const N_HAIRS: u32 = 11;
+const N_HAIRS: u32 = 10;
 /// Middle of the clock above the ground.
 const HEAD: DVec3 = dvec3(0.0, 2.6, 0.0);
 

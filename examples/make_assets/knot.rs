@@ -8,7 +8,7 @@ use crate::mesh::Mesh;
 
 const N_STRANDS: u32 = 3;
 /// Rings of points along a strand, points on a ring.
-const N_ALONG: u32 = 560;
+const N_ALONG: u32 = 546;
 const N_AROUND: u32 = 12;
 /// Crossings of the plait from edge to edge and back, all along the knot.
 const N_WAVES: f64 = 19.0;

@@ -30,7 +30,7 @@ pub(crate) fn bowl() -> Mesh {
         .curve([0.95, 0.725], [0.92, 0.73], [0.912, 0.702], 5)
         .curve([0.85, 0.39], [0.64, 0.15], [0.38, 0.1], 18)
         .curve([0.26, 0.08], [0.12, 0.075], [0.0, 0.075], 8)
-        .turn(72)
+        .turn(64)
 }
 
 /// A plate 2.4 wide with a flat rim.
@@ -44,7 +44,7 @@ pub(crate) fn plate() -> Mesh {
         .curve([0.74, 0.06], [0.68, 0.06], [0.62, 0.06], 5)
         .line(0.3, 0.06)
         .line(0.0, 0.06)
-        .turn(72)
+        .turn(64)
 }
 
 /// A candlestick 0.85 high with a socket of radius 0.13 whose floor is at 0.72.

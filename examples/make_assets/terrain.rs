@@ -12,9 +12,7 @@ pub(crate) fn hills() -> Mesh {
         let shore = 52.0 - 36.0 * smooth_step(0.3, 1.0, beside) + 14.0 * noise(0.06 * at.x, 0.7);
         let inland = at.y - shore;
         let folds = fractal(0.06 * at) + 0.35;
-        -0.8 + 1.1 * smooth_step(-4.0, 3.0, inland)
-            + 6.5 * smooth_step(0.0, 30.0, inland) * folds
-            + 0.5 * smooth_step(0.0, 6.0, inland) * fractal(0.5 * at)
+        -0.8 + 1.1 * smooth_step(-4.0, 3.0, inland) + 7.5 * smooth_step(0.0, 30.0, inland) * folds
     };
     landscape([12.0, 75.0], [100, 52], swell)
 }
@@ -50,10 +48,10 @@ fn landscape(depths: [f64; 2], cells: [u32; 2], height: impl Fn(DVec2) -> f64) -
     mesh
 }
 
-/// Noise in five octaves, about -0.6..0.6.
+/// Noise in three octaves, about -0.6..0.6: finer ones would be finer than the mesh.
 fn fractal(at: DVec2) -> f64 {
     let (mut sum, mut scale, mut gain) = (0.0, 1.0, 1.0);
-    for octave in 0..5 {
+    for octave in 0..3 {
         let shift = 11.9 * f64::from(octave);
         sum += gain * noise(scale * at.x + shift, scale * at.y - shift);
         scale *= 2.1;
@@ -62,10 +60,10 @@ fn fractal(at: DVec2) -> f64 {
     sum
 }
 
-/// Sharp crests in six octaves, about 0..1. Each octave is rough only where the one above is high.
+/// Sharp crests in four octaves, about 0..1. Each is rough only where the one above is high.
 fn ridges(at: DVec2) -> f64 {
     let (mut sum, mut weight, mut scale, mut gain) = (0.0, 1.0, 1.0, 0.5);
-    for octave in 0..6 {
+    for octave in 0..4 {
         let shift = 17.3 * f64::from(octave);
         let crest = 1.0 - 1.6 * noise(scale * at.x + shift, scale * at.y - shift).abs();
         let crest = crest * crest;

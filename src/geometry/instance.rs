@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use crate::geometry::mesh_tree::TracedMesh;
 use crate::geometry::{AcceleratorKind, Nearest, Shape};
-use crate::math::{Aabb, Ray, Transform};
+use crate::math::{Aabb, Ray, RayBatch, Transform};
 
 /// A shape and the transform that puts it into the world.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +34,15 @@ impl Instance {
     /// Around it in the world, rounded outwards; `None` where it is infinite or empty.
     pub fn bounds(&self) -> Option<Aabb> {
         self.bounds
+    }
+
+    /// Around everything that a ray of the world may be found to meet: a mesh is met in object
+    /// space, where the ray's origin is rounded in proportion to the distance of the two origins.
+    pub(super) fn reach(&self) -> Option<Aabb> {
+        const UNIT: f64 = 16.0 / 16_777_216.0;
+        let shift = self.transform.world_from_object_point(DVec3::ZERO).abs().max_element();
+        let pad = Vec3::splat((shift * UNIT) as f32);
+        self.bounds.map(|bounds| Aabb { min: bounds.min - pad, max: bounds.max + pad })
     }
 
     /// Takes the nearest hit of a ray of the world into `nearest`.
@@ -82,6 +91,81 @@ impl Instance {
         }
     }
 
+    /// [`Instance::intersect`] for many rays, one `nearest` each.
+    pub(super) fn intersect_batch(
+        &self,
+        rays: &RayBatch,
+        object: u32,
+        kind: AcceleratorKind,
+        nearest: &mut [Nearest],
+    ) {
+        match &self.shape {
+            Shape::Mesh(mesh) if !mesh.bounds.is_empty() => {
+                let tree = mesh.tree(kind);
+                if self.transform.is_identity() {
+                    tree.intersect_batch(rays, object, nearest);
+                } else {
+                    tree.intersect_batch(&self.object_rays(rays), object, nearest);
+                }
+            }
+            Shape::Mesh(_)
+            | Shape::Sphere { .. }
+            | Shape::Plane { .. }
+            | Shape::Box { .. }
+            | Shape::Cone { .. }
+            | Shape::Cylinder { .. } => {
+                for (index, nearest) in nearest.iter_mut().enumerate() {
+                    self.intersect(&rays.ray(index), object, kind, nearest);
+                }
+            }
+        }
+    }
+
+    /// [`Instance::occluded`] for many rays; those already blocked are left out.
+    pub(super) fn occluded_batch(
+        &self,
+        rays: &RayBatch,
+        object: u32,
+        kind: AcceleratorKind,
+        blocked: &mut [bool],
+    ) {
+        match &self.shape {
+            Shape::Mesh(mesh) if !mesh.bounds.is_empty() => {
+                let tree = mesh.tree(kind);
+                if self.transform.is_identity() {
+                    tree.occluded_batch(rays, object, blocked);
+                } else {
+                    tree.occluded_batch(&self.object_rays(rays), object, blocked);
+                }
+            }
+            Shape::Mesh(_)
+            | Shape::Sphere { .. }
+            | Shape::Plane { .. }
+            | Shape::Box { .. }
+            | Shape::Cone { .. }
+            | Shape::Cylinder { .. } => {
+                for (index, blocked) in blocked.iter_mut().enumerate() {
+                    *blocked = *blocked || self.occluded(&rays.ray(index), object, kind);
+                }
+            }
+        }
+    }
+
+    /// Rays of the world as a mesh sees them, with one rounding.
+    fn object_rays(&self, rays: &RayBatch) -> RayBatch {
+        let mut batch = RayBatch::default();
+        for index in 0..rays.len() {
+            batch.push(self.object_ray(&rays.ray(index)));
+        }
+        batch
+    }
+
+    fn object_ray(&self, ray: &Ray) -> Ray {
+        let origin = self.transform.object_from_world_point(ray.origin.as_dvec3()).as_vec3();
+        let direction = self.transform.object_from_world_vector(ray.direction.as_dvec3()).as_vec3();
+        Ray { origin, direction, ..*ray }
+    }
+
     /// Crossings of a solid by a ray of the world, in f64.
     pub(super) fn crossings(&self, ray: &Ray) -> [Option<(f64, u32)>; 2] {
         let origin = self.transform.object_from_world_point(ray.origin.as_dvec3());
@@ -97,11 +181,7 @@ impl Instance {
         if self.transform.is_identity() {
             return call(ray);
         }
-        let origin = self.transform.object_from_world_point(ray.origin.as_dvec3()).as_vec3();
-        let direction = self.transform.object_from_world_vector(ray.direction.as_dvec3()).as_vec3();
-        if direction != Vec3::ZERO {
-            call(&Ray { origin, direction, ..*ray });
-        }
+        call(&self.object_ray(ray));
     }
 }
 

@@ -9,8 +9,9 @@ use glam::{DVec3, Vec3};
 use crate::geometry::kd_tree::{self, Item, KdTree, Split, Walk};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::triangle::ShearedRay;
+use crate::geometry::wide_bvh::WideBvh;
 use crate::geometry::{AcceleratorKind, Nearest};
-use crate::math::{Aabb, Ray};
+use crate::math::{Aabb, Ray, RayBatch};
 
 /// A mesh with the trees that have been asked for; each is built once, on first use.
 #[derive(Debug)]
@@ -43,11 +44,16 @@ impl TracedMesh {
 /// The triangles of a mesh in the order of an accelerator's leaves.
 #[derive(Debug)]
 pub struct MeshTree {
-    kd_tree: Option<KdTree>,
-    bounds: Aabb,
-    triangles: Vec<Triangle>,
+    structure: Structure,
     /// How long the build took, in seconds.
     pub build_secs: f64,
+}
+
+#[derive(Debug)]
+enum Structure {
+    WideBvh(WideBvh),
+    KdTree(KdTree, Vec<Triangle>),
+    List(Vec<Triangle>),
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -59,23 +65,30 @@ struct Triangle {
 impl MeshTree {
     fn build(mesh: &Mesh, kind: AcceleratorKind) -> Self {
         let start = Instant::now();
-        let split = match kind {
-            AcceleratorKind::KdTree => Some(Split::SurfaceArea),
-            AcceleratorKind::KdMidpoint => Some(Split::Midpoint),
-            AcceleratorKind::BruteForce => None,
-        };
-        let kd_tree = split.map(|split| build_kd_tree(mesh, split));
         let triangle = |id: u32| Triangle { corners: mesh.corners(id), id };
-        let triangles = match &kd_tree {
-            Some(tree) => tree.items.iter().map(|id| triangle(*id)).collect(),
-            None => (0..mesh.triangles.len() as u32).map(triangle).collect(),
+        let kd_tree = |split| {
+            let tree = build_kd_tree(mesh, split);
+            let triangles = tree.items.iter().map(|id| triangle(*id)).collect();
+            Structure::KdTree(tree, triangles)
         };
-        let build_secs = start.elapsed().as_secs_f64();
-        Self { kd_tree, bounds: mesh.bounds(), triangles, build_secs }
+        let structure = match kind {
+            // Nothing to divide.
+            _ if mesh.triangles.is_empty() => Structure::List(Vec::new()),
+            AcceleratorKind::WideBvh => Structure::WideBvh(WideBvh::build(mesh)),
+            AcceleratorKind::KdTree => kd_tree(Split::SurfaceArea),
+            AcceleratorKind::KdMidpoint => kd_tree(Split::Midpoint),
+            AcceleratorKind::BruteForce => {
+                Structure::List((0..mesh.triangles.len() as u32).map(triangle).collect())
+            }
+        };
+        Self { structure, build_secs: start.elapsed().as_secs_f64() }
     }
 
     /// Takes the nearest hit of a ray in object space into `nearest`.
     pub(super) fn intersect(&self, ray: &Ray, object: u32, nearest: &mut Nearest) {
+        if let Structure::WideBvh(bvh) = &self.structure {
+            return bvh.intersect(ray, object, nearest);
+        }
         let mut clipped = *ray;
         clipped.t_max = nearest.t();
         let sheared = ShearedRay::new(ray);
@@ -91,6 +104,9 @@ impl MeshTree {
 
     /// Whether anything but the ray's source lies between its ends.
     pub(super) fn occluded(&self, ray: &Ray, object: u32) -> bool {
+        if let Structure::WideBvh(bvh) = &self.structure {
+            return bvh.occluded(ray, object);
+        }
         let sheared = ShearedRay::new(ray);
         let mut probe = Nearest::new(ray);
         self.visit(ray, |triangles| {
@@ -107,24 +123,56 @@ impl MeshTree {
         probe.is_hit()
     }
 
+    /// [`MeshTree::intersect`] for many rays, one `nearest` each.
+    pub(super) fn intersect_batch(&self, rays: &RayBatch, object: u32, nearest: &mut [Nearest]) {
+        if let Structure::WideBvh(bvh) = &self.structure {
+            return bvh.intersect_batch(rays, object, nearest);
+        }
+        for (index, nearest) in nearest.iter_mut().enumerate() {
+            self.intersect(&rays.ray(index), object, nearest);
+        }
+    }
+
+    /// [`MeshTree::occluded`] for many rays; those already blocked are left out.
+    pub(super) fn occluded_batch(&self, rays: &RayBatch, object: u32, blocked: &mut [bool]) {
+        if let Structure::WideBvh(bvh) = &self.structure {
+            return bvh.occluded_batch(rays, object, blocked);
+        }
+        for (index, blocked) in blocked.iter_mut().enumerate() {
+            *blocked = *blocked || self.occluded(&rays.ray(index), object);
+        }
+    }
+
     fn visit(&self, ray: &Ray, mut visit: impl FnMut(&[Triangle]) -> f32) {
-        let Some(walk) = Walk::new(ray, &self.bounds) else { return };
-        match &self.kd_tree {
-            Some(tree) => tree.walk(&walk, |range: Range<usize>| visit(&self.triangles[range])),
-            None => {
-                visit(&self.triangles);
+        match &self.structure {
+            Structure::KdTree(tree, triangles) => {
+                if let Some(walk) = Walk::new(ray, &tree.bounds) {
+                    tree.walk(&walk, |range: Range<usize>| visit(&triangles[range]));
+                }
             }
+            Structure::List(triangles) => {
+                visit(triangles);
+            }
+            Structure::WideBvh(_) => {}
         }
     }
 
     /// Number of nodes; 0 for brute force.
     pub fn n_nodes(&self) -> usize {
-        self.kd_tree.as_ref().map_or(0, KdTree::n_nodes)
+        match &self.structure {
+            Structure::WideBvh(bvh) => bvh.n_nodes(),
+            Structure::KdTree(tree, _) => tree.n_nodes(),
+            Structure::List(_) => 0,
+        }
     }
 
     /// Memory of nodes and triangles.
     pub fn n_bytes(&self) -> usize {
-        size_of_val(&self.triangles[..]) + self.kd_tree.as_ref().map_or(0, KdTree::n_bytes)
+        match &self.structure {
+            Structure::WideBvh(bvh) => bvh.n_bytes(),
+            Structure::KdTree(tree, triangles) => tree.n_bytes() + size_of_val(&triangles[..]),
+            Structure::List(triangles) => size_of_val(&triangles[..]),
+        }
     }
 }
 

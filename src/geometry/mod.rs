@@ -8,16 +8,20 @@
 mod extent;
 mod instance;
 pub mod kd_tree;
+mod lanes;
 pub mod mesh;
 mod mesh_tree;
 mod nearest;
 pub mod normals;
+mod select;
 mod shape;
 mod surface;
 mod triangle;
+mod wide_bvh;
 
 use crate::color::Rgb;
 use crate::geometry::kd_tree::{Item, KdTree, Split, Walk};
+use crate::geometry::select::Selector;
 use crate::math::{Aabb, PrimitiveId, Ray, RayBatch};
 
 pub use instance::Instance;
@@ -29,8 +33,10 @@ pub use surface::Surface;
 /// How rays find what they meet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum AcceleratorKind {
-    /// kd-tree built by the surface area heuristic.
+    /// Bounding volumes, eight to a node, for wide registers.
     #[default]
+    WideBvh,
+    /// kd-tree built by the surface area heuristic.
     KdTree,
     /// kd-tree cut at the middle of the longest side.
     KdMidpoint,
@@ -40,11 +46,12 @@ pub enum AcceleratorKind {
 
 impl AcceleratorKind {
     /// All kinds.
-    pub const ALL: [Self; 3] = [Self::KdTree, Self::KdMidpoint, Self::BruteForce];
+    pub const ALL: [Self; 4] = [Self::WideBvh, Self::KdTree, Self::KdMidpoint, Self::BruteForce];
 
     /// The name on the command line.
     pub fn name(self) -> &'static str {
         match self {
+            Self::WideBvh => "wide-bvh",
             Self::KdTree => "kd-tree",
             Self::KdMidpoint => "kd-midpoint",
             Self::BruteForce => "brute-force",
@@ -82,8 +89,8 @@ pub struct Geometry {
 impl Geometry {
     /// Builds whatever trees are missing. `instances` are in the scene's order, which numbers them.
     pub fn new(instances: Vec<Instance>, kind: AcceleratorKind) -> Self {
-        /// Fewer objects are not worth a tree.
-        const TREE_LIMIT: usize = 8;
+        /// Fewer objects are tested one by one, each by all rays of a batch that touch its box.
+        const TREE_LIMIT: usize = 48;
         for instance in &instances {
             if let Shape::Mesh(mesh) = instance.shape() {
                 mesh.tree(kind);
@@ -93,16 +100,16 @@ impl Geometry {
         let (bounded, mut listed): (Vec<u32>, Vec<u32>) =
             (0..instances.len() as u32).partition(bounded);
         let split = match kind {
-            AcceleratorKind::KdTree => Some(Split::SurfaceArea),
+            AcceleratorKind::WideBvh | AcceleratorKind::KdTree => Some(Split::SurfaceArea),
             AcceleratorKind::KdMidpoint => Some(Split::Midpoint),
             AcceleratorKind::BruteForce => None,
         };
         let tree = match split {
             Some(split) if bounded.len() > TREE_LIMIT => {
-                let item = |id: u32| Some(Item { id, bounds: instances[id as usize].bounds()? });
+                let item = |id: u32| Some(Item { id, bounds: instances[id as usize].reach()? });
                 let items = bounded.into_iter().filter_map(item).collect();
                 Some(kd_tree::build(items, split, &|id, cell: Aabb| {
-                    instances[id as usize].bounds().unwrap_or(cell).intersection(cell)
+                    instances[id as usize].reach().unwrap_or(cell).intersection(cell)
                 }))
             }
             _ => {
@@ -147,18 +154,49 @@ impl Geometry {
 
     /// What each ray meets first; `hits` is overwritten, one entry a ray.
     pub fn intersect(&self, rays: &RayBatch, hits: &mut Vec<Option<Hit>>) {
+        let mut nearest: Vec<Nearest> =
+            (0..rays.len()).map(|i| Nearest::new(&rays.ray(i))).collect();
+        let mut limits = rays.t_max.clone();
+        let mut selector = Selector::new(rays);
+        let mut selected = Vec::new();
+        for id in &self.listed {
+            let instance = &self.instances[*id as usize];
+            let Some(bounds) = self.box_of(instance) else {
+                instance.intersect_batch(rays, *id, self.kind, &mut nearest);
+                limits.iter_mut().zip(&nearest).for_each(|(limit, nearest)| *limit = nearest.t());
+                continue;
+            };
+            selector.select(&bounds, &limits, &mut selected);
+            if selected.len() == rays.len() {
+                instance.intersect_batch(rays, *id, self.kind, &mut nearest);
+                limits.iter_mut().zip(&nearest).for_each(|(limit, nearest)| *limit = nearest.t());
+            } else if !selected.is_empty() {
+                let mut theirs: Vec<Nearest> =
+                    selected.iter().map(|place| nearest[*place as usize]).collect();
+                let gathered = rays.gathered(&selected);
+                instance.intersect_batch(&gathered, *id, self.kind, &mut theirs);
+                for (place, theirs) in selected.iter().zip(theirs) {
+                    nearest[*place as usize] = theirs;
+                    limits[*place as usize] = theirs.t();
+                }
+            }
+        }
+        if self.tree.is_some() {
+            for (index, nearest) in nearest.iter_mut().enumerate() {
+                self.collect_from_tree(&rays.ray(index), |_| true, nearest);
+            }
+        }
         hits.clear();
-        hits.extend((0..rays.len()).map(|i| self.intersect_one(&rays.ray(i), |_| true)));
+        hits.extend(nearest.iter().map(Nearest::hit));
     }
 
     /// Whether anything lies between the ends of each ray; `blocked` is overwritten.
     pub fn occluded(&self, rays: &RayBatch, blocked: &mut Vec<bool>) {
-        blocked.clear();
-        blocked.extend((0..rays.len()).map(|i| self.occluded_one(&rays.ray(i), |_| true)));
+        self.occluded_by(rays, |_| true, blocked);
     }
 
-    /// The share of light that passes along each ray where some objects are clear: `clear(object)`
-    /// gives the factor of one surface of an object, or `None` where it is opaque. Factors are
+    /// The share of light that passes along each ray where some objects are clear: `clear(hit)`
+    /// gives the factor of the surface that is met, or `None` where it is opaque. Factors are
     /// multiplied in order of distance, then primitive. `shares` is overwritten.
     pub fn transmittance(
         &self,
@@ -167,12 +205,14 @@ impl Geometry {
         is_clear: impl Fn(u32) -> bool,
         shares: &mut Vec<Rgb>,
     ) {
+        let mut blocked = Vec::new();
+        self.occluded_by(rays, |object| !is_clear(object), &mut blocked);
         shares.clear();
-        shares.extend((0..rays.len()).map(|i| {
-            let ray = rays.ray(i);
-            if self.occluded_one(&ray, |object| !is_clear(object)) {
+        shares.extend(blocked.iter().enumerate().map(|(i, is_blocked)| {
+            if *is_blocked {
                 return Rgb::ZERO;
             }
+            let ray = rays.ray(i);
             let mut share = Rgb::ONE;
             let mut after = (0.0, PrimitiveId::NONE);
             while let Some(hit) = self.next_hit(&ray, after, &is_clear) {
@@ -187,10 +227,56 @@ impl Geometry {
         }));
     }
 
-    fn intersect_one(&self, ray: &Ray, take: impl Fn(u32) -> bool) -> Option<Hit> {
-        let mut nearest = Nearest::new(ray);
-        self.collect(ray, take, &mut nearest);
-        nearest.hit()
+    /// Whether any of the objects to take lies between the ends of each ray.
+    fn occluded_by(
+        &self,
+        rays: &RayBatch,
+        take: impl Fn(u32) -> bool + Copy,
+        blocked: &mut Vec<bool>,
+    ) {
+        blocked.clear();
+        blocked.resize(rays.len(), false);
+        let mut limits = rays.t_max.clone();
+        let mut selector = Selector::new(rays);
+        let mut selected = Vec::new();
+        let done = |is_blocked: bool, limit: &mut f32| {
+            if is_blocked {
+                *limit = -1.0;
+            }
+        };
+        for id in self.listed.iter().filter(|id| take(**id)) {
+            let instance = &self.instances[*id as usize];
+            let Some(bounds) = self.box_of(instance) else {
+                instance.occluded_batch(rays, *id, self.kind, blocked);
+                limits.iter_mut().zip(&*blocked).for_each(|(limit, b)| done(*b, limit));
+                continue;
+            };
+            selector.select(&bounds, &limits, &mut selected);
+            if selected.is_empty() {
+                continue;
+            }
+            let mut theirs = vec![false; selected.len()];
+            instance.occluded_batch(&rays.gathered(&selected), *id, self.kind, &mut theirs);
+            for (place, is_blocked) in selected.iter().zip(theirs) {
+                blocked[*place as usize] |= is_blocked;
+                done(is_blocked, &mut limits[*place as usize]);
+            }
+        }
+        if self.tree.is_some() {
+            for (index, blocked) in blocked.iter_mut().enumerate() {
+                *blocked = *blocked || self.occluded_by_tree(&rays.ray(index), take);
+            }
+        }
+    }
+
+    /// What rays are held against before an object; the oracle does without.
+    fn box_of(&self, instance: &Instance) -> Option<Aabb> {
+        match self.kind {
+            AcceleratorKind::WideBvh | AcceleratorKind::KdTree | AcceleratorKind::KdMidpoint => {
+                instance.reach()
+            }
+            AcceleratorKind::BruteForce => None,
+        }
     }
 
     /// The first hit after `after` in the order of distance, then primitive.
@@ -209,6 +295,10 @@ impl Geometry {
         for id in self.listed.iter().copied().filter(|id| take(*id)) {
             self.instances[id as usize].intersect(ray, id, self.kind, nearest);
         }
+        self.collect_from_tree(ray, take, nearest);
+    }
+
+    fn collect_from_tree(&self, ray: &Ray, take: impl Fn(u32) -> bool, nearest: &mut Nearest) {
         let Some(tree) = &self.tree else { return };
         let clipped = Ray { t_max: nearest.t(), ..*ray };
         let Some(walk) = Walk::new(&clipped, &tree.bounds) else { return };
@@ -220,11 +310,8 @@ impl Geometry {
         });
     }
 
-    fn occluded_one(&self, ray: &Ray, take: impl Fn(u32) -> bool) -> bool {
+    fn occluded_by_tree(&self, ray: &Ray, take: impl Fn(u32) -> bool) -> bool {
         let blocks = |id: u32| take(id) && self.instances[id as usize].occluded(ray, id, self.kind);
-        if self.listed.iter().any(|id| blocks(*id)) {
-            return true;
-        }
         let Some(tree) = &self.tree else { return false };
         let Some(walk) = Walk::new(ray, &tree.bounds) else { return false };
         let mut is_blocked = false;

@@ -46,7 +46,7 @@ impl Nearest {
         }
     }
 
-    /// Farther hits are of no interest.
+    /// Farther hits are of no interest; equal ones may be, of a lower primitive.
     #[inline]
     pub fn t(&self) -> f32 {
         self.best.t

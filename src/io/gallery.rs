@@ -59,6 +59,7 @@ static FILES: &[(&str, &[u8])] = embedded![
     "assets/egg.obj",
     "assets/flame.obj",
     "assets/hills.obj",
+    "assets/icon.png",
     "assets/knot.obj",
     "assets/pawn.obj",
     "assets/peaks.obj",

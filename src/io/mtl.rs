@@ -6,6 +6,7 @@
 
 mod lines;
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use crate::io::excerpt;
@@ -35,7 +36,7 @@ pub fn materials_of_slots(
     mut read: impl FnMut(&Path) -> Result<Vec<u8>, String>,
 ) -> (Vec<Option<MtlMaterial>>, Vec<String>) {
     let mut warnings = Vec::new();
-    let mut known = Vec::new();
+    let mut known: HashMap<String, MtlMaterial> = HashMap::new();
     for library in libraries {
         let path = portable_path(library);
         let label = excerpt(library.as_bytes());
@@ -43,7 +44,11 @@ pub fn materials_of_slots(
             Ok(bytes) => {
                 let (materials, told) = parse(&bytes);
                 warnings.extend(told.into_iter().map(|warning| format!("{label}: {warning}")));
-                known.extend(materials.into_iter().map(|material| relative_to(&path, material)));
+                for material in materials {
+                    // Of two with one name the first is meant.
+                    let entry = known.entry(material.name.clone());
+                    entry.or_insert_with(|| relative_to(&path, material));
+                }
             }
             Err(reason) => warnings.push(format!("material library {label}: {reason}")),
         }
@@ -53,7 +58,7 @@ pub fn materials_of_slots(
         .iter()
         .map(|name| {
             let name = name.as_ref()?;
-            let found = known.iter().find(|material| material.name == *name);
+            let found = known.get(name);
             if found.is_none() {
                 unknown.push(name.as_str());
             }

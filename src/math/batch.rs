@@ -81,6 +81,15 @@ impl RayBatch {
         }
     }
 
+    /// The rays at these places, in their order.
+    pub fn gathered(&self, places: &[u32]) -> Self {
+        let mut gathered = Self::default();
+        for place in places {
+            gathered.push(self.ray(*place as usize));
+        }
+        gathered
+    }
+
     /// Number of rays.
     pub fn len(&self) -> usize {
         self.t_max.len()

@@ -9,6 +9,7 @@ pub mod description;
 pub mod image;
 pub mod light;
 pub mod material;
+pub mod orbit;
 pub mod resolve;
 pub mod texture;
 

@@ -292,8 +292,8 @@ fn light(entry: &file::LightDescription) -> Light {
     let axis = dvec(entry.target) - position;
     let normal = axis.normalize_or(DVec3::NEG_Y);
     let power = dvec(entry.power);
-    let [width, height] = entry.size.pair();
-    let is_point = width == 0.0 && height == 0.0;
+    let [width, height] = light_size(entry);
+    let is_point = width == 0.0;
     let scaled = |factor: f64| (power * factor).as_vec3();
     let center = position.as_vec3();
     let emitter = match entry.kind {
@@ -332,6 +332,17 @@ fn light(entry: &file::LightDescription) -> Light {
         }
     };
     Light { visible: entry.visible, emitter }
+}
+
+/// Width and height, both 0 for a light so small that it is its own limit, and that its radiance
+/// could not be computed with; never only one of them.
+fn light_size(entry: &file::LightDescription) -> [f64; 2] {
+    const SMALLEST: f64 = 1e-9;
+    let sides = entry.size.pair();
+    if sides.iter().all(|side| *side < SMALLEST) {
+        return [0.0; 2];
+    }
+    sides.map(|side| side.max(SMALLEST))
 }
 
 /// x along the width, z towards the emitting side.

@@ -1,10 +1,18 @@
 //! What Penumbra promises, tested from outside: one binary, a module a subject.
 
 #[cfg(test)]
+mod analytic;
+#[cfg(test)]
 mod cli;
+#[cfg(test)]
+mod common;
+#[cfg(test)]
+mod density;
 #[cfg(test)]
 mod floors;
 #[cfg(test)]
 mod hostile;
+#[cfg(test)]
+mod oracle;
 #[cfg(test)]
 mod session;

@@ -60,7 +60,11 @@ impl Stage {
     fn new() -> Self {
         let (script, calls) = Script::new();
         let (wake, wakes) = channel();
-        let session = Session::with_renderer(script, move || drop(wake.send(()))).unwrap();
+        let session = Session::with_renderer(script, move || {
+            // Nobody may be listening any more.
+            let _ = wake.send(());
+        })
+        .unwrap();
         Self { calls, session, wakes, frames: Arc::default() }
     }
 

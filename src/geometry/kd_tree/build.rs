@@ -53,7 +53,7 @@ pub fn build(items: Vec<Item>, split: Split, clip: &(impl Fn(u32, Aabb) -> Aabb 
 
 enum BuildNode {
     Leaf(Vec<u32>),
-    Inner { axis: usize, plane: f32, children: Box<[BuildNode; 2]> },
+    Inner { axis: usize, plane: f32, children: Box<[Self; 2]> },
 }
 
 struct Builder<'a, C> {

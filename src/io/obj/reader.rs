@@ -13,6 +13,9 @@ use crate::io::excerpt;
 /// Entries that any array of a mesh may have: indices stay far from `ABSENT`.
 const MAX_ENTRIES: usize = 1 << 30;
 
+/// Material libraries that are looked for; more are a mistake of the exporter.
+const MAX_LIBRARIES: usize = 100;
+
 /// Largest coordinate: what a tracer multiplies in `f32` stays finite.
 const MAX_COORDINATE: f32 = 1e12;
 
@@ -143,8 +146,9 @@ impl<'a> Reader<'a> {
     fn read_libraries(&mut self) -> Result<(), ObjError> {
         let names = self.cursor.rest_of_line();
         for name in split_library_names(&String::from_utf8_lossy(names)) {
-            if !self.file.libraries.iter().any(|known| known == name) {
-                self.file.libraries.push(name.to_owned());
+            let libraries = &mut self.file.libraries;
+            if libraries.len() < MAX_LIBRARIES && !libraries.iter().any(|known| known == name) {
+                libraries.push(name.to_owned());
             }
         }
         self.end_line()
@@ -238,10 +242,14 @@ impl<'a> Reader<'a> {
 
     fn warn(&mut self) {
         let n_flat = count_without_area(&self.file);
+        let n_libraries = self.file.libraries.len();
         let warnings = &mut self.file.warnings;
         if let Some((line, keyword)) = &self.unknown {
             let n = self.n_unknown_lines;
             warnings.push(format!("line {line}: `{keyword}` is not known; lines passed over: {n}"));
+        }
+        if n_libraries == MAX_LIBRARIES {
+            warnings.push(format!("only the first {MAX_LIBRARIES} material libraries are read"));
         }
         if !self.zero_normals.is_empty() {
             let (line, n) = (self.zero_normal_line, self.zero_normals.len());

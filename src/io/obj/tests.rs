@@ -97,6 +97,14 @@ fn libraries_may_be_several_and_hold_blanks() {
 }
 
 #[test]
+fn libraries_without_end_are_cut_off() {
+    let lines: String = (0..5000).map(|i| format!("mtllib {i}.mtl\n")).collect();
+    let file = read(&(lines + TRIANGLE));
+    assert_eq!(file.libraries.len(), 100);
+    assert_eq!(file.warnings, ["only the first 100 material libraries are read"]);
+}
+
+#[test]
 fn zero_normals_are_absent_and_told() {
     let file = read("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 1 0 0\nvn 0 0 0\nf 1//1 2//2 3//1\n");
     assert_eq!(file.normal_ids, [[0, ABSENT, 0]]);

@@ -5,10 +5,6 @@
 //! between values. An error says line and column, the parameter's path, what was found and what
 //! would be right. Nothing here reads the meshes and images that a scene names.
 
-use std::fs::File;
-use std::io::Read;
-use std::path::Path;
-
 use serde::Deserialize;
 use toml::{Table, Value};
 
@@ -79,10 +75,6 @@ pub enum SceneFileError {
     /// The file is longer than [`LARGEST_FILE`].
     #[error("is longer than {LARGEST_FILE} bytes, too long for a scene")]
     TooLarge,
-
-    /// The file cannot be read.
-    #[error("cannot be read: {0}")]
-    Io(#[from] std::io::Error),
 }
 
 impl SceneFileError {
@@ -91,7 +83,7 @@ impl SceneFileError {
         match self {
             Self::Override(_) | Self::OverrideValue { .. } => self.to_string(),
             Self::Text { .. } => format!("{}:{self}", printable(file)),
-            Self::TooLarge | Self::Io(_) => format!("{}: {self}", printable(file)),
+            Self::TooLarge => format!("{}: {self}", printable(file)),
         }
     }
 }
@@ -110,17 +102,6 @@ impl Invalid {
     fn of(fault: Fault, root: &Table) -> Self {
         Self { path: path_text(root, &fault.steps), message: fault.message }
     }
-}
-
-/// The text of a scene file; checks its length before it takes memory.
-pub fn read_text(path: &Path) -> Result<String, SceneFileError> {
-    let file = File::open(path)?;
-    if LARGEST_FILE < file.metadata()?.len() {
-        return Err(SceneFileError::TooLarge);
-    }
-    let mut bytes = Vec::new();
-    file.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
-    text_of(bytes)
 }
 
 /// Bytes of a scene file as text.

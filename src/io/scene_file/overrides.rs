@@ -51,8 +51,7 @@ impl Override {
             ));
         };
         let (path, value) = (&text[..end], text[end + 1..].trim());
-        let path =
-            path.parse::<ParameterPath>().map_err(|e| error(format!("its path {}", e.message)))?;
+        let path = path.parse::<ParameterPath>().map_err(|e| error(e.message))?;
         if value.is_empty() {
             return Err(error(
                 "has no value; write PATH=VALUE, as in camera.vertical_fov=35".into(),
@@ -125,6 +124,8 @@ mod tests {
             "a.b=1\nc = 2",
             "a.b=\u{1b}[31m",
             "render.samples=-",
+            "render.seed=0x",
+            "materials.é.ior=2",
         ] {
             let read = Override::parse(text);
             let error = read.expect_err(text).to_string();

@@ -151,9 +151,7 @@ impl FromStr for ParameterPath {
                 None => {
                     return Err(PathError {
                         path: cut(&quoted(text)),
-                        message: "is no path: put quotes around names with other characters \
-                                  than letters, digits, - and _"
-                            .into(),
+                        message: NEEDS_QUOTES.into(),
                     });
                 }
             }
@@ -161,24 +159,30 @@ impl FromStr for ParameterPath {
     }
 }
 
+const NEEDS_QUOTES: &str =
+    "a name in the path has other characters than letters, digits, - and _; put it in quotes";
+
 /// The first name of a path, and what follows it.
 fn read_name(text: &str) -> Result<(String, &str), &'static str> {
-    const UNCLOSED: &str = "is no path: a quote is not closed";
+    const UNCLOSED: &str = "a quote in the path is not closed";
+    const UNREADABLE: &str = "a quoted name in the path is no TOML string";
     if let Some(inside) = text.strip_prefix('\'') {
         let end = inside.find('\'').ok_or(UNCLOSED)?;
         return Ok((inside[..end].into(), &inside[end + 1..]));
     }
     if text.starts_with('"') {
         let end = closing_quote(text).ok_or(UNCLOSED)?;
-        let value: Value =
-            text[..end].parse().map_err(|_| "is no path: a quoted name is no TOML string")?;
-        let name = value.as_str().ok_or("is no path: a quoted name is no TOML string")?;
+        let value: Value = text[..end].parse().map_err(|_| UNREADABLE)?;
+        let name = value.as_str().ok_or(UNREADABLE)?;
         return Ok((name.into(), &text[end..]));
     }
     let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     let end = text.find(|c| !is_bare(c)).unwrap_or(text.len());
+    if end == 0 && !text.is_empty() && !text.starts_with('.') {
+        return Err(NEEDS_QUOTES);
+    }
     if end == 0 {
-        return Err("is no path: a name is missing; write it as in camera.eye");
+        return Err("a name is missing in the path; write it as in camera.eye");
     }
     Ok((text[..end].into(), &text[end..]))
 }

@@ -119,6 +119,7 @@ const REFUSED: &[(&str, usize, usize, &str)] = &[
     ("[render]\nseed = -1", 3, 8, "from 0 to 4294967295"),
     ("[render]\nseed = 4294967296", 3, 8, "4294967296"),
     ("[render]\nseed = 99999999999999999999", 3, 8, "1e20 is not a seed"),
+    ("[render]\nseed = 0xffffffffffffffffff", 3, 8, "\"0xffffffffffffffffff\" is not a seed"),
     ("[render]\nintegrator = \"pth\"", 3, 14, "; did you mean \"path\"?"),
     ("[render]\nfilter = \"gauss\"", 3, 10, "give \"box\""),
     ("[render]\nadaptive = 1", 3, 12, "1 is not a switch; give true or false"),
@@ -376,6 +377,7 @@ fn mistakes_of_the_camera_are_named_with_their_place() {
         ("[camera]\neye=[0,\"a\",1]\ntarget=[0,0,0]", 2, 8, "[0, \"a\", 1] is not a point"),
         ("\u{feff}[camera]\r\neye=[0,0,1]\r\ntarget=5", 3, 8, "5 is not a point"),
         ("# é\n[camera]\neyé=1", 3, 3, "not TOML"),
+        ("\u{feff}rendr = 1", 1, 1, "there is no section \"rendr\""),
         ("[camera]\n'é'=1", 2, 1, "camera.\"é\": there is no such key"),
     ] {
         let error = parse(text, &[]).map(|_| ()).expect_err(text).to_string();

@@ -32,7 +32,7 @@ impl<'t> Source<'t> {
             Err(error) => {
                 let span = error.span().unwrap_or(text.len()..text.len());
                 let found = text.get(span.clone()).unwrap_or_default().trim();
-                let message = printable(error.message());
+                let message = complaint(&error);
                 let found = if found.is_empty() {
                     String::new()
                 } else {
@@ -43,7 +43,8 @@ impl<'t> Source<'t> {
         }
     }
 
-    /// Its content. An integer beyond 64 bits becomes a float, to be refused by what it is for.
+    /// Its content. An integer beyond 64 bits becomes a float or, of another base than ten, a
+    /// string, to be refused by what it is for.
     pub(super) fn table(&self) -> Table {
         plain_table(&self.root)
     }
@@ -94,10 +95,15 @@ pub(super) fn parse_value(text: &str) -> Result<Value, String> {
     if too_deep(text).is_some() {
         return Err("nested too deeply".into());
     }
-    match DeValue::parse(text) {
-        Ok(value) => Ok(plain(value.get_ref())),
-        Err(error) => Err(printable(error.message())),
-    }
+    text.parse::<Value>().map_err(|error| complaint(&error))
+}
+
+/// The parser's words, without what says nothing.
+fn complaint(error: &toml::de::Error) -> String {
+    let message = error.message();
+    let known = [", expected nothing", ", expected literal string"];
+    let message = known.into_iter().find_map(|end| message.strip_suffix(end)).unwrap_or(message);
+    printable(message)
 }
 
 /// Line and column of a byte offset.
@@ -119,7 +125,10 @@ fn plain(value: &DeValue<'_>) -> Value {
         DeValue::String(text) => Value::String(text.to_string()),
         DeValue::Integer(digits) => match i64::from_str_radix(digits.as_str(), digits.radix()) {
             Ok(integer) => Value::Integer(integer),
-            Err(_) => Value::Float(digits.as_str().parse().unwrap_or(f64::INFINITY)),
+            Err(_) => match digits.as_str().parse() {
+                Ok(float) if digits.radix() == 10 => Value::Float(float),
+                _ => Value::String(digits.to_string()),
+            },
         },
         DeValue::Float(digits) => Value::Float(digits.as_str().parse().unwrap_or(f64::NAN)),
         DeValue::Boolean(flag) => Value::Boolean(*flag),

@@ -37,7 +37,11 @@ fn finish(session: &Session, wakes: &super::Receiver<()>, job: &RenderJob) -> Pi
 
 fn session(n_threads: usize) -> (Session, super::Receiver<()>) {
     let (wake, wakes) = channel();
-    let session = Session::new(n_threads, move || drop(wake.send(()))).unwrap();
+    let session = Session::new(n_threads, move || {
+        // Nobody may be listening any more.
+        let _ = wake.send(());
+    })
+    .unwrap();
     (session, wakes)
 }
 

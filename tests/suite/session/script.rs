@@ -45,7 +45,7 @@ impl Call {
 
     /// Does what is asked.
     pub(super) fn run(self) -> Self {
-        drop(self.answer.send(Answer::Run));
+        let _ = self.answer.send(Answer::Run);
         self
     }
 

@@ -1,0 +1,224 @@
+//! What each action does, and the questions that may have to be asked first.
+
+use super::app::App;
+use super::compare::{CompareChoice, Pinned};
+use super::dialogs::{Purpose, UnsavedAnswer, unsaved_question};
+use super::files::Pending;
+use super::keys::Action;
+use super::toolbar::ToolbarChoice;
+use crate::loader::Source;
+use crate::scene::description::{SceneDescription, ToneOperator};
+use crate::scene::orbit::{self, StandardView};
+use egui::ViewportCommand;
+
+impl App {
+    /// Does what a key, a button or a menu asks for.
+    pub(super) fn do_action(
+        &mut self,
+        ctx: &egui::Context,
+        scene: &mut SceneDescription,
+        action: Action,
+    ) {
+        match action {
+            Action::FrameAll => self.frame_all(scene),
+            Action::HomeCamera => {
+                scene.camera = self.home_camera.clone();
+                self.interface.navigation.pivot = None;
+            }
+            Action::ViewFront => self.standard_view(scene, StandardView::Front),
+            Action::ViewSide => self.standard_view(scene, StandardView::Side),
+            Action::ViewTop => self.standard_view(scene, StandardView::Top),
+            Action::Pause => self.interface.is_paused = !self.interface.is_paused,
+            Action::Restart => self.work.session.restart(),
+            Action::Brighter => step_exposure(scene, 0.5),
+            Action::Darker => step_exposure(scene, -0.5),
+            Action::NextOperator => {
+                scene.tone_mapping.operator = next_operator(scene.tone_mapping.operator);
+            }
+            Action::ToggleLens => self.toggle_lens(scene),
+            Action::Snapshot => self.snapshot(),
+            Action::Save => self.save_scene(ctx),
+            Action::SaveAs => self.files.ask_where_to_save(ctx, &mut self.dialogs),
+            Action::Open => self.dialogs.ask(ctx, Purpose::Open, ""),
+            Action::CopyImage => self.copy_picture(ctx),
+            Action::Undo => {
+                if let Some(step) = self.document.undo() {
+                    self.toasts.say(format!("undone: {step}"));
+                }
+                scene.clone_from(&self.document.description);
+            }
+            Action::Redo => {
+                if let Some(step) = self.document.redo() {
+                    self.toasts.say(format!("done again: {step}"));
+                }
+                scene.clone_from(&self.document.description);
+            }
+            Action::Compare => self.toggle_compare(ctx),
+            Action::TogglePanel => self.interface.panel_shown = !self.interface.panel_shown,
+            Action::FullScreen => {
+                let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
+                ctx.send_viewport_cmd(ViewportCommand::Fullscreen(!full));
+            }
+            Action::Help => self.interface.help_shown = !self.interface.help_shown,
+            Action::Cancel => self.cancel(ctx),
+        }
+    }
+
+    /// Does what was chosen in the toolbar.
+    pub(super) fn do_choice(
+        &mut self,
+        ctx: &egui::Context,
+        scene: &mut SceneDescription,
+        choice: ToolbarChoice,
+    ) {
+        match choice {
+            ToolbarChoice::Do(action) => self.do_action(ctx, scene, action),
+            ToolbarChoice::Gallery(index) => {
+                if let Some(entry) = crate::io::gallery::GALLERY.get(index) {
+                    self.open(Source::Gallery(entry.name));
+                }
+            }
+            ToolbarChoice::File(path) => self.open(Source::File(path)),
+            ToolbarChoice::PathBox => self.dialogs.type_path(Purpose::Open, ""),
+        }
+    }
+
+    /// Opens a source, after a question where edits would be lost.
+    pub(super) fn open(&mut self, source: Source) {
+        if self.document.is_dirty() {
+            self.files.pending = Some(Pending::Open(source));
+        } else {
+            self.files.open(source);
+        }
+    }
+
+    /// Shows the box for a path and takes what the dialogs answered.
+    pub(super) fn ask_for_paths(&mut self, ctx: &egui::Context) {
+        match self.dialogs.take_path(ctx) {
+            None => {}
+            Some((Purpose::Open, path)) => self.open(Source::File(path)),
+            Some((Purpose::SaveScene, path)) => self.save_to(ctx, path),
+        }
+    }
+
+    /// Keeps the window open while there are edits to ask about.
+    pub(super) fn guard_close(&mut self, ctx: &egui::Context) {
+        let asked = ctx.input(|input| input.viewport().close_requested());
+        if asked && self.document.is_dirty() && !self.files.close_confirmed {
+            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.files.pending = Some(Pending::Close);
+        }
+    }
+
+    /// Asks about unsaved edits where something waits for the answer.
+    pub(super) fn ask_about_unsaved(&mut self, ctx: &egui::Context) {
+        if self.files.pending.is_none() || self.files.is_saving_first {
+            return;
+        }
+        match unsaved_question(ctx, &self.files.title) {
+            None => {}
+            Some(UnsavedAnswer::Save) => {
+                self.files.is_saving_first = true;
+                self.save_scene(ctx);
+            }
+            Some(UnsavedAnswer::Discard) => self.go_on(ctx),
+            Some(UnsavedAnswer::Cancel) => self.files.pending = None,
+        }
+    }
+
+    pub(super) fn go_on(&mut self, ctx: &egui::Context) {
+        self.files.is_saving_first = false;
+        match self.files.pending.take() {
+            None => {}
+            Some(Pending::Open(source)) => self.files.open(source),
+            Some(Pending::Close) => {
+                self.files.close_confirmed = true;
+                ctx.send_viewport_cmd(ViewportCommand::Close);
+            }
+        }
+    }
+
+    fn cancel(&mut self, ctx: &egui::Context) {
+        let closed = std::mem::take(&mut self.interface.help_shown)
+            || self.interface.picking.take().is_some()
+            || self.dialogs.dismiss()
+            || self.stop_asking()
+            || self.files.cancel_loading()
+            || self.toasts.dismiss();
+        let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
+        if !closed && full {
+            ctx.send_viewport_cmd(ViewportCommand::Fullscreen(false));
+        }
+    }
+
+    /// Pins the picture on show, or lets the pinned one go.
+    fn toggle_compare(&mut self, ctx: &egui::Context) {
+        if self.pinned.take().is_some() {
+            return;
+        }
+        match self.picture_on_show() {
+            Some(image) => {
+                let description = self.document.description.clone();
+                self.pinned = Some(Pinned::new(ctx, image, description));
+            }
+            None => self.toasts.say("there is no picture to pin yet"),
+        }
+    }
+
+    /// Does what was chosen at the pinned picture.
+    pub(super) fn do_compare(&mut self, scene: &mut SceneDescription, choice: CompareChoice) {
+        if let (CompareChoice::Restore, Some(pinned)) = (choice, &self.pinned) {
+            scene.clone_from(&pinned.description);
+            self.gesture.next();
+        }
+        self.pinned = None;
+    }
+
+    /// Leaves the question about unsaved edits unanswered: everything stays.
+    fn stop_asking(&mut self) -> bool {
+        !self.files.is_saving_first && self.files.pending.take().is_some()
+    }
+
+    fn frame_all(&mut self, scene: &mut SceneDescription) {
+        let [width, height] = self.picture_size();
+        let aspect = f64::from(width) / f64::from(height.max(1));
+        scene.camera = orbit::framed(&scene.camera, &self.work.bounds(), aspect);
+        self.interface.navigation.pivot = None;
+    }
+
+    fn standard_view(&mut self, scene: &mut SceneDescription, view: StandardView) {
+        let pivot = self.interface.navigation.pivot(&scene.camera);
+        scene.camera = orbit::standard_view(&scene.camera, pivot, view);
+    }
+
+    fn toggle_lens(&mut self, scene: &mut SceneDescription) {
+        let radius = scene.camera.aperture_radius;
+        if radius > 0.0 {
+            self.interface.lens_when_open = Some(radius);
+            scene.camera.aperture_radius = 0.0;
+        } else {
+            let usual = orbit::focal_distance(&scene.camera) * 0.01;
+            scene.camera.aperture_radius = self.interface.lens_when_open.unwrap_or(usual);
+        }
+    }
+
+    fn save_scene(&mut self, ctx: &egui::Context) {
+        match self.files.scene_path.clone() {
+            Some(path) => self.save_to(ctx, path),
+            None => self.files.ask_where_to_save(ctx, &mut self.dialogs),
+        }
+    }
+}
+
+fn step_exposure(scene: &mut SceneDescription, stops: f64) {
+    scene.tone_mapping.exposure = (scene.tone_mapping.exposure + stops).clamp(-64.0, 64.0);
+}
+
+fn next_operator(operator: ToneOperator) -> ToneOperator {
+    match operator {
+        ToneOperator::Agx => ToneOperator::Aces,
+        ToneOperator::Aces => ToneOperator::Reinhard,
+        ToneOperator::Reinhard => ToneOperator::Linear,
+        ToneOperator::Linear => ToneOperator::Agx,
+    }
+}

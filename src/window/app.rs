@@ -1,0 +1,254 @@
+//! The window's state and its frame: panels edit the scene, the scene becomes a job, the newest
+//! picture is shown. Nothing here traces, loads, waits or maps tones.
+
+use super::compare::Pinned;
+use super::dialogs::PathDialogs;
+use super::files::FileWork;
+use super::gesture::Gesture;
+use super::picture::PictureDisplay;
+use super::probe::Probe;
+use super::recovery::Recovery;
+use super::state::{InterfaceState, Remembered};
+use super::swatches::Swatches;
+use super::toasts::Toasts;
+use super::viewport::Click;
+use super::watch::Watcher;
+use super::work::RenderWork;
+use super::{help, keys};
+use crate::document::Document;
+use crate::io::scene_file;
+use crate::loader::{Loader, Source};
+use crate::scene::description::{CameraDescription, SceneDescription};
+use crate::session::Session;
+use crate::threads;
+use egui::Ui;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// The whole window.
+pub(super) struct App {
+    pub(super) document: Document,
+    pub(super) interface: InterfaceState,
+    pub(super) files: FileWork,
+    pub(super) work: RenderWork,
+    pub(super) dialogs: PathDialogs,
+    pub(super) toasts: Toasts,
+    /// The camera the scene was opened with.
+    pub(super) home_camera: CameraDescription,
+    /// The click whose answer from the renderer is awaited.
+    pub(super) awaited_click: Option<Click>,
+    pub(super) gesture: Gesture,
+    /// Whether the next full picture is written to a file.
+    pub(super) snapshot_wanted: bool,
+    /// The picture that the live one is compared with.
+    pub(super) pinned: Option<Pinned>,
+    pub(super) probe: Probe,
+    pub(super) watcher: Watcher,
+    pub(super) recovery: Recovery,
+    pub(super) picture: PictureDisplay,
+    pub(super) swatches: Swatches,
+    pub(super) viewport: ViewportFacts,
+}
+
+/// What the viewport was like in the last frame.
+pub(super) struct ViewportFacts {
+    /// Size in pixels of the picture being rendered.
+    pub(super) size: [u32; 2],
+    /// Screen pixels per picture pixel, times 100.
+    pub(super) zoom_percent: f64,
+    /// The picture pixel under the cursor.
+    pub(super) hovered_pixel: Option<[u32; 2]>,
+    /// Whether letters fly.
+    pub(super) flying: bool,
+    /// Where it is, in points.
+    pub(super) rect: egui::Rect,
+}
+
+impl App {
+    /// A window that starts loading `first`; `ctx` is woken when there is something new.
+    ///
+    /// # Errors
+    /// When the system has no thread left.
+    pub(super) fn new(
+        ctx: &egui::Context,
+        remembered: Remembered,
+        first: Source,
+        own_folder: Option<PathBuf>,
+    ) -> std::io::Result<Self> {
+        let wake = || {
+            let ctx = ctx.clone();
+            move || ctx.request_repaint()
+        };
+        // One processor is left to the window itself.
+        let n_threads = threads::available().saturating_sub(1).max(1);
+        let session = Session::new(n_threads, wake())?;
+        let mut files = FileWork::new(Loader::new(wake())?);
+        files.open(first);
+        let empty = empty_scene();
+        Ok(Self {
+            home_camera: empty.camera.clone(),
+            document: Document::new(empty, None),
+            interface: remembered.restore(),
+            files,
+            work: RenderWork::new(session),
+            dialogs: PathDialogs::default(),
+            toasts: Toasts::default(),
+            awaited_click: None,
+            snapshot_wanted: false,
+            pinned: None,
+            probe: Probe::default(),
+            watcher: Watcher::new(wake())?,
+            recovery: Recovery::new(own_folder),
+            gesture: Gesture::default(),
+            picture: PictureDisplay::new(wake())?,
+            swatches: Swatches::new(wake())?,
+            viewport: ViewportFacts {
+                size: [1, 1],
+                zoom_percent: 100.0,
+                hovered_pixel: None,
+                flying: false,
+                rect: egui::Rect::ZERO,
+            },
+        })
+    }
+
+    /// Size in pixels of the picture being rendered.
+    pub(super) fn picture_size(&self) -> [u32; 2] {
+        self.viewport.size
+    }
+
+    /// Makes what the panels did a step of undo. What no scene file could say is not taken over:
+    /// the scene stays at its last valid state.
+    fn take_edit(&mut self, scene: SceneDescription) {
+        if scene == self.document.description {
+            return;
+        }
+        if let Err(fault) = scene_file::validate(&scene) {
+            self.toasts.say(fault.to_string());
+            return;
+        }
+        let label = edit_label(&self.document.description, &scene);
+        self.document.description = scene;
+        self.document.checkpoint(label, Some(self.gesture.id()));
+    }
+
+    /// The bytes on show.
+    pub(super) fn picture_on_show(&self) -> Option<&Arc<egui::ColorImage>> {
+        self.picture.image()
+    }
+
+    /// Takes over what changed in `scene`, makes it the job, and shows the newest picture.
+    fn render(&mut self, ctx: &egui::Context, scene: SceneDescription) {
+        self.take_edit(scene);
+        if self.files.has_scene {
+            let description = &self.document.description;
+            let submitted = self.work.submit(description, &self.interface, self.viewport.size);
+            match submitted {
+                Ok(()) => self.files.missing = None,
+                Err(missing) => self.load_missing(missing),
+            }
+        }
+        self.work.session.set_paused(self.interface.is_paused);
+        if let Some(frame) = self.work.session.latest() {
+            self.picture.show(&frame, &self.document.description.tone_mapping);
+            if frame.scale == 1 {
+                self.work.note_noise(frame.generation, frame.samples, frame.noise_percent);
+            }
+            self.take_snapshot(ctx, &frame);
+        }
+        self.picture.update(ctx);
+    }
+}
+
+impl App {
+    /// Takes what other threads have finished; also while the window is hidden.
+    pub(super) fn take_news(&mut self, ctx: &egui::Context) {
+        self.take_results(ctx);
+        self.reload_if_changed();
+        self.keep_copy(ctx);
+        self.guard_close(ctx);
+    }
+
+    /// One frame of the window.
+    pub(super) fn frame_ui(&mut self, ui: &mut Ui) {
+        let ctx = ui.ctx().clone();
+        self.gesture.update(&ctx);
+        let mut scene = self.document.description.clone();
+        for action in keys::pressed(&ctx, self.viewport.flying) {
+            self.do_action(&ctx, &mut scene, action);
+        }
+        self.take_dropped_file(&ctx);
+        self.layout_ui(ui, &mut scene);
+        self.take_pick(&mut scene);
+        self.render(&ctx, scene);
+        if self.interface.help_shown {
+            help::help_ui(&ctx, &mut self.interface.help_shown);
+        }
+        self.offer_copy(&ctx);
+        self.ask_for_paths(&ctx);
+        self.ask_about_unsaved(&ctx);
+        let foot = self.viewport.rect.center_bottom() - egui::Vec2::new(0.0, 16.0);
+        self.toasts.show(&ctx, foot);
+    }
+}
+
+impl eframe::App for App {
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.take_news(ctx);
+    }
+
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        self.frame_ui(ui);
+    }
+
+    fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
+        self.recovery.forget();
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        eframe::set_value(storage, Remembered::KEY, &Remembered::of(&self.interface));
+    }
+}
+
+/// What undo would say it undoes.
+fn edit_label(before: &SceneDescription, after: &SceneDescription) -> &'static str {
+    if before.camera != after.camera {
+        "camera"
+    } else if before.lights != after.lights {
+        "light"
+    } else if before.materials != after.materials {
+        "material"
+    } else if before.textures != after.textures {
+        "texture"
+    } else if before.objects != after.objects {
+        "object"
+    } else if before.environment != after.environment {
+        "background"
+    } else if before.tone_mapping != after.tone_mapping {
+        "exposure and curve"
+    } else {
+        "render settings"
+    }
+}
+
+/// What is edited until the first scene is there.
+fn empty_scene() -> SceneDescription {
+    SceneDescription {
+        render: Default::default(),
+        camera: CameraDescription {
+            eye: [0.0, 1.0, 5.0],
+            target: [0.0; 3],
+            up: [0.0, 1.0, 0.0],
+            vertical_fov: 40.0,
+            aperture_radius: 0.0,
+            focal_distance: None,
+            aperture_blades: 0,
+        },
+        tone_mapping: Default::default(),
+        environment: Default::default(),
+        textures: Vec::new(),
+        materials: Vec::new(),
+        lights: Vec::new(),
+        objects: Vec::new(),
+    }
+}

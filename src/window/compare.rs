@@ -1,0 +1,161 @@
+//! Compare: a pinned picture beside the live one, with a split to drag, and what differs.
+
+use crate::io::scene_file;
+use crate::scene::description::SceneDescription;
+use egui::{Align2, Color32, ColorImage, Pos2, Rect, Sense, Stroke, TextureHandle, Ui, pos2};
+use std::sync::Arc;
+
+/// Differences shown at once.
+const MOST_LINES: usize = 12;
+
+/// A picture that was kept, and the scene that made it.
+pub(super) struct Pinned {
+    /// The scene as it was.
+    pub(super) description: SceneDescription,
+    texture: TextureHandle,
+    split: f32,
+    differences: Vec<String>,
+    compared_with: Option<SceneDescription>,
+}
+
+/// What was chosen at the pinned picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum CompareChoice {
+    /// Take the pinned scene back.
+    Restore,
+    /// Stop comparing.
+    Close,
+}
+
+impl Pinned {
+    /// Keeps this picture and the scene that made it.
+    pub(super) fn new(
+        ctx: &egui::Context,
+        image: &Arc<ColorImage>,
+        description: SceneDescription,
+    ) -> Self {
+        let options = egui::TextureOptions::LINEAR;
+        let texture = ctx.load_texture("pinned", Arc::clone(image), options);
+        Self { description, texture, split: 0.5, differences: Vec::new(), compared_with: None }
+    }
+
+    /// Draws the pinned picture over the left part of the live one in `picture`, the split, and
+    /// the list of differences to `scene`.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        picture: Rect,
+        clip: Rect,
+        scene: &SceneDescription,
+    ) -> Option<CompareChoice> {
+        let visible = picture.intersect(clip);
+        let x = visible.left() + visible.width() * self.split;
+        let grip =
+            Rect::from_center_size(pos2(x, visible.center().y), egui::vec2(12.0, visible.height()));
+        let response = ui
+            .interact(grip, ui.scope_id().with("split"), Sense::drag())
+            .on_hover_and_drag_cursor(egui::CursorIcon::ResizeHorizontal);
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Splitter, true, "Split"));
+        if let Some(at) = response.interact_pointer_pos() {
+            self.split = ((at.x - visible.left()) / visible.width()).clamp(0.02, 0.98);
+        }
+        let left = Rect::from_min_max(visible.min, pos2(x, visible.bottom()));
+        let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+        let painter = ui.painter_at(clip);
+        painter.with_clip_rect(left).image(self.texture.id(), picture, whole, Color32::WHITE);
+        painter.vline(x, visible.y_range(), Stroke::new(3.0, Color32::from_black_alpha(120)));
+        painter.vline(x, visible.y_range(), Stroke::new(1.0, Color32::WHITE));
+        self.compare(scene);
+        self.legend(ui, visible)
+    }
+
+    fn compare(&mut self, scene: &SceneDescription) {
+        if self.compared_with.as_ref() != Some(scene) {
+            self.differences = differences(&self.description, scene);
+            self.compared_with = Some(scene.clone());
+        }
+    }
+
+    fn legend(&self, ui: &Ui, visible: Rect) -> Option<CompareChoice> {
+        let mut chosen = None;
+        egui::Area::new(egui::Id::unique("compare"))
+            .order(egui::Order::Middle)
+            .pivot(Align2::LEFT_TOP)
+            .fixed_pos(visible.left_top() + egui::vec2(12.0, 12.0))
+            .show(ui.ctx(), |ui| {
+                egui::Frame::popup(ui.style()).show(ui, |ui| {
+                    ui.set_max_width(340.0);
+                    ui.horizontal(|ui| {
+                        ui.strong("Pinned on the left");
+                        let restore = ui.button("Restore");
+                        if restore.on_hover_text("takes the pinned scene back").clicked() {
+                            chosen = Some(CompareChoice::Restore);
+                        }
+                        if ui.button("Unpin").on_hover_text("stops comparing (X)").clicked() {
+                            chosen = Some(CompareChoice::Close);
+                        }
+                    });
+                    if self.differences.is_empty() {
+                        ui.weak("no setting differs");
+                    }
+                    for line in self.differences.iter().take(MOST_LINES) {
+                        ui.add(egui::Label::new(line).truncate());
+                    }
+                    let n_more = self.differences.len().saturating_sub(MOST_LINES);
+                    if 0 < n_more {
+                        ui.weak(format!("and {n_more} more"));
+                    }
+                });
+            });
+        chosen
+    }
+}
+
+/// The parameters whose values differ, a line each: path, then, now.
+fn differences(then: &SceneDescription, now: &SceneDescription) -> Vec<String> {
+    let known = |scene: &SceneDescription| {
+        scene_file::parameters(scene)
+            .into_iter()
+            .filter_map(|path| {
+                let value = scene_file::get(scene, &path).ok().flatten()?;
+                Some((path.to_string(), value.to_string()))
+            })
+            .collect::<Vec<_>>()
+    };
+    let (then, now) = (known(then), known(now));
+    let find = |list: &[(String, String)], path: &str| {
+        list.iter().find(|(known, _)| known == path).map(|(_, value)| value.clone())
+    };
+    let mut lines = Vec::new();
+    for (path, value) in &now {
+        match find(&then, path) {
+            Some(before) if before == *value => {}
+            Some(before) => lines.push(format!("{path}: {before}, now {value}")),
+            None => lines.push(format!("{path}: new, {value}")),
+        }
+    }
+    let gone = then.iter().filter(|(path, _)| find(&now, path).is_none());
+    lines.extend(gone.map(|(path, _)| format!("{path}: gone")));
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::window::tests::small_scene;
+
+    #[test]
+    fn differences_name_the_parameter_and_both_values() {
+        let then = small_scene();
+        let mut now = then.clone();
+        assert!(differences(&then, &now).is_empty(), "equal scenes differ");
+        now.camera.vertical_fov = 55.0;
+        now.materials[0].alpha_x = 0.5;
+        let lines = differences(&then, &now);
+        assert_eq!(
+            lines,
+            ["camera.vertical_fov: 40.0, now 55.0", "materials.glaze.alpha_x: 0.15, now 0.5"],
+            "other lines"
+        );
+    }
+}

@@ -1,0 +1,216 @@
+//! What comes back from the threads that work for the window, and from other programs.
+
+use super::app::App;
+use super::files::{Written, file_title};
+use super::panels::PickFor;
+use super::viewport::Click;
+use crate::document::Document;
+use crate::loader::{LoadError, Loaded, Source};
+use crate::scene::Assets;
+use crate::scene::description::SceneDescription;
+use crate::scene::resolve::ResolveError;
+use egui::ViewportCommand;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+impl App {
+    /// Takes what the loader and the writers have finished.
+    pub(super) fn take_results(&mut self, ctx: &egui::Context) {
+        match self.files.loader.take() {
+            None | Some(Err(LoadError::Cancelled)) => {}
+            Some(Ok(loaded)) if self.files.is_completing => self.take_assets(loaded),
+            Some(Ok(loaded)) if self.files.is_reloading => self.take_reloaded(loaded),
+            Some(Ok(loaded)) => self.take_scene(ctx, loaded),
+            Some(Err(failure)) => {
+                self.files.loading = None;
+                self.files.is_completing = false;
+                self.files.is_reloading = false;
+                self.toasts.fail(failure.to_string());
+            }
+        }
+        while let Some(written) = self.files.take_written() {
+            match written {
+                Written::Scene { path, description } => {
+                    self.toasts.say(format!("saved {}", path.display()));
+                    self.files.title = file_title(&path);
+                    self.interface.remember_file(path.clone());
+                    if *description == self.document.description {
+                        self.document.mark_saved(&path);
+                    }
+                    self.files.scene_path = Some(path);
+                    self.watch_files();
+                    self.go_on(ctx);
+                }
+                Written::Snapshot(path) => {
+                    self.toasts.say(format!("snapshot {}", path.display()));
+                }
+                Written::Copy => {}
+                Written::Failed(reason) => {
+                    self.files.pending = None;
+                    self.files.is_saving_first = false;
+                    self.toasts.fail(reason);
+                }
+            }
+        }
+    }
+
+    /// Answers the question that a click in the picture asked of the renderer.
+    pub(super) fn take_pick(&mut self, scene: &mut SceneDescription) {
+        let Some(picked) = self.work.session.take_picked() else { return };
+        let asked = self.awaited_click.filter(|click| {
+            let (Click::For(_, x, y) | Click::TurnAbout(x, y)) = *click;
+            (x, y) == (picked.x, picked.y)
+        });
+        let Some(click) = asked else {
+            self.probe.take(&picked, scene, self.picture_size()[1]);
+            return;
+        };
+        self.awaited_click = None;
+        let Some(pick) = picked.pick else {
+            self.toasts.say("there is nothing under the cursor");
+            return;
+        };
+        let (point, depth) = (pick.point.map(f64::from), f64::from(pick.depth));
+        let eye = scene.camera.eye;
+        let light = scene.lights.get_mut(self.interface.selection.light);
+        match (click, light) {
+            (Click::TurnAbout(..), _) => {
+                self.interface.navigation.pivot = Some(point);
+                self.toasts.say("the camera turns about this point now");
+            }
+            (Click::For(PickFor::Focus, ..), _) => scene.camera.focal_distance = Some(depth),
+            (Click::For(PickFor::LightTarget, ..), Some(light)) => light.target = point,
+            (Click::For(PickFor::LightPosition, ..), Some(light)) => {
+                // Off the surface towards the eye, so that it shines.
+                let towards = |axis: usize| point[axis] + (eye[axis] - point[axis]) * 0.12;
+                light.position = [towards(0), towards(1), towards(2)];
+            }
+            (Click::For(PickFor::LightTarget | PickFor::LightPosition, ..), None) => {}
+        }
+        self.gesture.next();
+    }
+
+    /// Opens a file that was dropped on the window.
+    pub(super) fn take_dropped_file(&mut self, ctx: &egui::Context) {
+        let dropped: Option<PathBuf> =
+            ctx.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()));
+        if let Some(path) = dropped {
+            self.open(Source::File(path));
+        }
+    }
+
+    fn take_scene(&mut self, ctx: &egui::Context, loaded: Loaded) {
+        let Loaded { source, folder, description, assets, files, report, snapshot: _ } = loaded;
+        self.files.loading = None;
+        self.files.has_scene = true;
+        self.files.title = source.stem();
+        self.files.folder = folder;
+        self.files.source = Some(source.clone());
+        self.files.missing = None;
+        self.files.records = files;
+        self.files.scene_path = None;
+        if let Source::File(path) = &source {
+            self.interface.remember_file(path.clone());
+            if path.extension().is_some_and(|ending| ending == "toml") {
+                self.files.scene_path = Some(path.clone());
+            }
+        }
+        if !report.is_empty() {
+            let n_lines = report.len();
+            let first = &report[0];
+            let more =
+                if n_lines > 1 { format!(" (and {} more)", n_lines - 1) } else { String::new() };
+            self.toasts.say(format!("{first}{more}"));
+        }
+        self.files.report = report;
+        self.home_camera = description.camera.clone();
+        self.interface.forget_scene();
+        self.pinned = None;
+        self.awaited_click = None;
+        self.work.set_assets(Arc::new(assets));
+        self.document = Document::new(description, self.files.scene_path.clone());
+        self.gesture.next();
+        self.watch_files();
+        ctx.send_viewport_cmd(ViewportCommand::Title(format!("{} – Penumbra", self.files.title)));
+    }
+
+    /// Takes the files that an edit made necessary; the edit itself is in the document.
+    fn take_assets(&mut self, loaded: Loaded) {
+        self.files.loading = None;
+        self.files.is_completing = false;
+        self.files.records = loaded.files;
+        self.work.set_assets(Arc::new(loaded.assets));
+    }
+
+    /// Takes over what another program made of the open scene. A camera that was moved stays,
+    /// unless the file moved it too. One step of undo.
+    fn take_reloaded(&mut self, loaded: Loaded) {
+        self.files.loading = None;
+        self.files.is_reloading = false;
+        let mut description = loaded.description;
+        let file_camera = description.camera.clone();
+        if file_camera == self.home_camera {
+            description.camera = self.document.description.camera.clone();
+        }
+        self.home_camera = file_camera;
+        self.files.records = loaded.files;
+        self.files.report = loaded.report;
+        self.work.set_assets(Arc::new(loaded.assets));
+        self.document.reload(description);
+        self.watch_files();
+        self.toasts.say("reloaded: the file was changed by another program");
+    }
+
+    /// Loads the open scene again where another program changed one of its files.
+    pub(super) fn reload_if_changed(&mut self) {
+        let is_busy = self.files.loading.is_some();
+        if is_busy || !self.watcher.take_news() {
+            return;
+        }
+        if let Some(source) = self.files.source.clone() {
+            self.files.open(source);
+            self.files.is_reloading = true;
+        }
+    }
+
+    /// Watches the files of the open scene, as they are now.
+    fn watch_files(&self) {
+        let scene = match &self.files.source {
+            Some(Source::File(path)) => Some(path.clone()),
+            Some(Source::Gallery(_)) | None => None,
+        };
+        let used = self
+            .files
+            .records
+            .iter()
+            .filter_map(|record| self.files.folder.disk_path(&record.file));
+        self.watcher.watch(scene.into_iter().chain(used).collect());
+    }
+
+    /// Loads what the edited scene names and nobody has read yet.
+    pub(super) fn load_missing(&mut self, missing: ResolveError) {
+        let is_file = match &missing {
+            ResolveError::Mesh(_) | ResolveError::Image(_) => true,
+            ResolveError::Invalid { .. } => false,
+        };
+        if self.files.missing.as_ref() == Some(&missing) {
+            return;
+        }
+        if !is_file {
+            self.toasts.fail(format!("cannot render this scene: {missing}"));
+        } else if let Some(source) = self.files.source.clone() {
+            self.files.is_completing = true;
+            self.files.loading = Some("what the edit needs".to_owned());
+            self.files.loader.complete(Loaded {
+                source,
+                folder: self.files.folder.clone(),
+                description: self.document.description.clone(),
+                assets: Assets::clone(&self.work.assets),
+                files: self.files.records.clone(),
+                report: Vec::new(),
+                snapshot: None,
+            });
+        }
+        self.files.missing = Some(missing);
+    }
+}

@@ -1,0 +1,233 @@
+//! What each key and each motion of the mouse does: one table that binds the keys, names them in
+//! tooltips and fills the help overlay.
+
+use egui::{Key, Modifiers};
+
+/// Something a key, a button or a menu makes the window do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Action {
+    /// Moves the camera so that the whole scene is in the picture.
+    FrameAll,
+    /// Back to the camera the scene was opened with.
+    HomeCamera,
+    /// Looks from +Z.
+    ViewFront,
+    /// Looks from +X.
+    ViewSide,
+    /// Looks from +Y.
+    ViewTop,
+    /// Stops refining, or goes on.
+    Pause,
+    /// Starts the picture again from its first sample.
+    Restart,
+    /// Half a stop brighter.
+    Brighter,
+    /// Half a stop darker.
+    Darker,
+    /// The next tone curve.
+    NextOperator,
+    /// Closes the lens, or opens it as it was.
+    ToggleLens,
+    /// Writes a picture file.
+    Snapshot,
+    /// Saves the scene where it came from.
+    Save,
+    /// Saves the scene under another name.
+    SaveAs,
+    /// Asks for a file to open.
+    Open,
+    /// Puts the picture on the clipboard.
+    CopyImage,
+    /// Takes the last edit back.
+    Undo,
+    /// Makes the edit again that was taken back.
+    Redo,
+    /// Pins the picture to compare with, or lets it go.
+    Compare,
+    /// Shows the panel, or hides it.
+    TogglePanel,
+    /// Fills the screen, or goes back to a window.
+    FullScreen,
+    /// Shows or hides the list of keys.
+    Help,
+    /// Stops what is under way: loading, a choice, an overlay.
+    Cancel,
+}
+
+/// A key with its modifiers, and what it does.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Binding {
+    /// What happens.
+    pub(super) action: Action,
+    /// `COMMAND` is Ctrl, and Cmd on macOS.
+    pub(super) modifiers: Modifiers,
+    /// Pressed together with the modifiers.
+    pub(super) key: Key,
+    /// As the help overlay says it.
+    pub(super) does: &'static str,
+}
+
+const COMMAND_SHIFT: Modifiers = Modifiers { shift: true, command: true, ..Modifiers::NONE };
+
+/// Every key the window listens to. Where one action has several, the first is named in tooltips.
+pub(super) const BINDINGS: &[Binding] = &[
+    key(Action::FrameAll, Modifiers::NONE, Key::Home, "frame all"),
+    key(Action::HomeCamera, Modifiers::NONE, Key::Backspace, "back to the scene's own camera"),
+    key(Action::ViewFront, Modifiers::CTRL, Key::Num1, "front view"),
+    key(Action::ViewSide, Modifiers::CTRL, Key::Num3, "side view"),
+    key(Action::ViewTop, Modifiers::CTRL, Key::Num7, "top view"),
+    key(Action::Pause, Modifiers::NONE, Key::Space, "pause"),
+    key(Action::Restart, Modifiers::NONE, Key::R, "restart"),
+    key(Action::Brighter, Modifiers::NONE, Key::E, "half a stop brighter"),
+    key(Action::Darker, Modifiers::SHIFT, Key::E, "half a stop darker"),
+    key(Action::NextOperator, Modifiers::NONE, Key::T, "next tone curve"),
+    key(Action::ToggleLens, Modifiers::NONE, Key::D, "lens open or closed"),
+    key(Action::Snapshot, Modifiers::NONE, Key::F12, "snapshot"),
+    key(Action::Save, Modifiers::COMMAND, Key::S, "save the scene"),
+    key(Action::SaveAs, COMMAND_SHIFT, Key::S, "save the scene as…"),
+    key(Action::Open, Modifiers::COMMAND, Key::O, "open…"),
+    key(Action::CopyImage, Modifiers::COMMAND, Key::C, "copy the picture"),
+    key(Action::Undo, Modifiers::COMMAND, Key::Z, "undo"),
+    key(Action::Redo, COMMAND_SHIFT, Key::Z, "redo"),
+    key(Action::Redo, Modifiers::COMMAND, Key::Y, "redo"),
+    key(Action::Compare, Modifiers::NONE, Key::X, "pin the picture and compare"),
+    key(Action::TogglePanel, Modifiers::NONE, Key::N, "panel"),
+    key(Action::FullScreen, Modifiers::NONE, Key::F11, "full screen"),
+    key(Action::Help, Modifiers::NONE, Key::H, "this help"),
+    key(Action::Help, Modifiers::NONE, Key::F1, "this help"),
+    key(Action::Cancel, Modifiers::NONE, Key::Escape, "cancel, close; never quits"),
+];
+
+/// Motions of the mouse over the picture, and what they do: for the help overlay.
+pub(super) const MOTIONS: &[(&str, &str)] = &[
+    ("left drag", "orbit"),
+    ("middle drag, Shift + left drag", "pan"),
+    ("wheel, Ctrl + right drag", "nearer, farther"),
+    ("right drag", "look about"),
+    ("right drag with W A S D, Q E", "fly"),
+    ("Ctrl + left click", "focus here"),
+    ("double click", "orbit about this point"),
+    ("drop a file", "open it"),
+];
+
+/// The actions whose keys were pressed, taken out of the input. Keys alone do nothing while a
+/// field has the focus; with Ctrl they do, but for those that text fields use themselves. While
+/// the camera is `flying`, letters belong to it.
+pub(super) fn pressed(ctx: &egui::Context, flying: bool) -> Vec<Action> {
+    let typing = ctx.memory(|memory| memory.focused().is_some());
+    let mut actions = Vec::new();
+    ctx.input_mut(|input| {
+        // Those with more modifiers first: Ctrl+Shift+Z is not Ctrl+Z.
+        for binding in most_specific_first() {
+            let works_while_typing = match binding.action {
+                Action::Undo | Action::Redo | Action::CopyImage => false,
+                Action::Snapshot | Action::FullScreen => true,
+                _ => binding.modifiers.command,
+            };
+            if typing && !works_while_typing {
+                continue;
+            }
+            if flying && !binding.modifiers.command {
+                continue;
+            }
+            if binding.action == Action::CopyImage {
+                // The system's copy arrives as an event of its own, without a key.
+                let asked = |event: &egui::Event| matches!(event, egui::Event::Copy);
+                if input.events.iter().any(asked) {
+                    actions.push(binding.action);
+                }
+            }
+            if input.consume_key(binding.modifiers, binding.key) {
+                actions.push(binding.action);
+            }
+        }
+    });
+    actions.dedup();
+    actions
+}
+
+/// The keys of an action as a person reads them: "Ctrl+Shift+S". Empty where it has none.
+pub(super) fn shown(action: Action) -> String {
+    BINDINGS.iter().find(|binding| binding.action == action).map_or_else(String::new, keys_of)
+}
+
+/// A tooltip: what the button does, and its key.
+pub(super) fn hint(text: &str, action: Action) -> String {
+    format!("{text} ({})", shown(action))
+}
+
+/// The keys of one binding as a person reads them.
+pub(super) fn keys_of(binding: &Binding) -> String {
+    let mut text = String::new();
+    if binding.modifiers.command || binding.modifiers.ctrl {
+        text.push_str(if cfg!(target_os = "macos") { "Cmd+" } else { "Ctrl+" });
+    }
+    if binding.modifiers.shift {
+        text.push_str("Shift+");
+    }
+    text.push_str(binding.key.name());
+    text
+}
+
+const fn key(action: Action, modifiers: Modifiers, key: Key, does: &'static str) -> Binding {
+    Binding { action, modifiers, key, does }
+}
+
+fn most_specific_first() -> impl Iterator<Item = &'static Binding> {
+    let n_modifiers = |binding: &Binding| {
+        let Modifiers { shift, command, ctrl, alt, .. } = binding.modifiers;
+        [shift, command, ctrl, alt].into_iter().filter(|held| *held).count()
+    };
+    let mut all: Vec<&Binding> = BINDINGS.iter().collect();
+    all.sort_by_key(|binding| std::cmp::Reverse(n_modifiers(binding)));
+    all.into_iter()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn press(key: Key, modifiers: Modifiers) -> Vec<Action> {
+        let ctx = egui::Context::default();
+        let mut input = egui::RawInput::default();
+        input.events.push(egui::Event::ModifiersChanged(modifiers));
+        input.events.push(egui::Event::Key {
+            key,
+            physical_key: None,
+            pressed: true,
+            repeat: false,
+            modifiers,
+        });
+        let mut actions = Vec::new();
+        let mut output = ctx.run_ui(input, |ui| actions.extend(pressed(ui.ctx(), false)));
+        output.textures_delta.clear();
+        actions
+    }
+
+    #[test]
+    fn every_key_of_the_table_does_its_own_action_and_no_other() {
+        for binding in BINDINGS {
+            let mut modifiers = binding.modifiers;
+            modifiers.ctrl |= modifiers.command;
+            modifiers.command |= modifiers.ctrl;
+            let actions = press(binding.key, modifiers);
+            assert_eq!(actions, [binding.action], "{} does {actions:?}", keys_of(binding));
+        }
+    }
+
+    #[test]
+    fn no_two_actions_share_a_key() {
+        for (index, one) in BINDINGS.iter().enumerate() {
+            for other in &BINDINGS[index + 1..] {
+                let same = one.key == other.key && one.modifiers == other.modifiers;
+                assert!(!same, "{:?} and {:?} share {}", one.action, other.action, keys_of(one));
+            }
+        }
+    }
+
+    #[test]
+    fn keys_read_as_people_say_them() {
+        assert_eq!(shown(Action::SaveAs), "Ctrl+Shift+S", "modifiers in another order");
+        assert_eq!(shown(Action::Snapshot), "F12", "F12 is named differently");
+    }
+}

@@ -1,0 +1,225 @@
+//! Where things are in the window: bars, panel, picture. All of them edit one description in place.
+
+use super::app::{App, ViewportFacts};
+use super::handles::lights_in_picture;
+use super::panels::{self, RenderFacts};
+use super::status::{PixelUnderCursor, StatusLine, Work, status_ui};
+use super::toolbar::{ToolbarChoice, ToolbarFacts, toolbar_ui};
+use super::viewport::{Click, physical_size, viewport_ui};
+use super::work::picture_size;
+use crate::geometry::{AcceleratorKind, TreeStatistics};
+use crate::io::gallery::GALLERY;
+use crate::scene::description::SceneDescription;
+use crate::session::{Frame, Phase};
+use egui::{Margin, Panel, Ui};
+
+impl App {
+    /// The bars, the panel and the picture, editing `scene` in place.
+    pub(super) fn layout_ui(&mut self, ui: &mut Ui, scene: &mut SceneDescription) {
+        let frame = self.work.session.latest();
+        let chosen = self.toolbar(ui, scene);
+        self.status_bar(ui, frame.as_deref());
+        let panel_shown = self.interface.panel_shown;
+        let side = Panel::right("settings")
+            .default_size(328.0)
+            .size_range(272.0..=520.0)
+            .resizable(true)
+            .frame(egui::Frame::side_top_panel(ui.style()).inner_margin(Margin {
+                left: 8,
+                right: 2,
+                top: 2,
+                bottom: 0,
+            }));
+        if panel_shown {
+            side.show(ui, |ui| {
+                egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                    self.panel_ui(ui, scene);
+                });
+            });
+        }
+        egui::CentralPanel::no_frame().show(ui, |ui| self.central_ui(ui, scene));
+        if let Some(chosen) = chosen {
+            self.do_choice(ui.ctx(), scene, chosen);
+        }
+    }
+
+    fn toolbar(&mut self, ui: &mut Ui, scene: &mut SceneDescription) -> Option<ToolbarChoice> {
+        let titles: Vec<&str> = GALLERY.iter().map(|entry| entry.title).collect();
+        let facts = ToolbarFacts {
+            title: &self.files.title,
+            has_unsaved: self.document.is_dirty(),
+            undo: self.document.undo_label(),
+            redo: self.document.redo_label(),
+            is_paused: self.interface.is_paused,
+            panel_shown: self.interface.panel_shown,
+            gallery: &titles,
+            recent: &self.interface.recent,
+        };
+        let display = &mut self.interface.display;
+        let tone = &mut scene.tone_mapping;
+        Panel::top("toolbar")
+            .exact_size(38.0)
+            .show(ui, |ui| toolbar_ui(ui, &facts, tone, display))
+            .inner
+    }
+
+    fn status_bar(&mut self, ui: &mut Ui, frame: Option<&Frame>) {
+        let line = self.status_line(frame);
+        let pixel = self.viewport.hovered_pixel.and_then(|at| pixel_at(frame?, at));
+        let margin = Margin { left: 8, right: 8, top: 0, bottom: 0 };
+        Panel::bottom("status")
+            .exact_size(26.0)
+            .frame(egui::Frame::side_top_panel(ui.style()).inner_margin(margin))
+            .show(ui, |ui| {
+                if self.files.loading.is_some() {
+                    self.loading_ui(ui);
+                } else {
+                    status_ui(ui, &line, pixel, self.probe.answer());
+                }
+            });
+    }
+
+    fn loading_ui(&mut self, ui: &mut Ui) {
+        let name = self.files.loading.clone().unwrap_or_default();
+        ui.horizontal_centered(|ui| {
+            ui.spinner();
+            ui.label(egui::RichText::new(format!("loading {name}")).strong());
+            if ui.button("Cancel").on_hover_text("keeps the scene that is open (Esc)").clicked() {
+                self.files.cancel_loading();
+            }
+        });
+    }
+
+    fn panel_ui(&mut self, ui: &mut Ui, scene: &mut SceneDescription) {
+        let status = self.work.session.status();
+        let interface = &mut self.interface;
+        let (swatches, assets) = (&mut self.swatches, &self.work.assets);
+        let facts = RenderFacts {
+            accelerators: &AcceleratorKind::ALL.map(AcceleratorKind::name),
+            tree: tree_lines(status.trees.as_ref()),
+            seconds: status.seconds,
+            noise: &self.work.noise,
+        };
+        let summary = format!("{} samples", scene.render.samples);
+        panels::section(ui, "Render", &summary, false, |ui| {
+            let (size, accelerator) = (&mut interface.size_mode, &mut interface.accelerator);
+            let limits = &mut interface.limits;
+            panels::render_ui(ui, &mut scene.render, size, accelerator, limits, &facts);
+        });
+        panels::section(ui, "Camera & lens", "", true, |ui| {
+            let (unit, picking) = (&mut interface.scene_unit_mm, &mut interface.picking);
+            panels::camera_ui(ui, &mut scene.camera, unit, picking);
+        });
+        let summary = scene.lights.len().to_string();
+        panels::section(ui, "Lights", &summary, true, |ui| {
+            let (picking, shown) = (&mut interface.picking, &mut interface.lights_shown);
+            panels::lights_ui(ui, scene, &mut interface.selection, picking, shown);
+        });
+        let summary = scene.materials.len().to_string();
+        panels::section(ui, "Materials", &summary, true, |ui| {
+            panels::materials_ui(ui, scene, &mut interface.selection, |ui, material, textures| {
+                swatches.ball_ui(ui, material, textures, assets);
+            });
+        });
+        let summary = scene.textures.len().to_string();
+        panels::section(ui, "Textures", &summary, false, |ui| {
+            panels::textures_ui(ui, scene, &mut interface.selection, |ui, texture| {
+                swatches.patch_ui(ui, texture, assets);
+            });
+        });
+        panels::section(ui, "Display", "", false, |ui| {
+            let statistics = self.picture.statistics();
+            let tone = &mut scene.tone_mapping;
+            panels::display_ui(ui, tone, &mut interface.display, statistics);
+        });
+        let summary = scene.objects.len().to_string();
+        panels::section(ui, "Scene", &summary, false, |ui| {
+            panels::objects_ui(ui, scene, &mut interface.selection);
+            panels::report_ui(ui, &self.files.report);
+        });
+    }
+
+    fn central_ui(&mut self, ui: &mut Ui, scene: &mut SceneDescription) {
+        let viewport = physical_size(ui.available_rect_before_wrap(), ui.pixels_per_point());
+        let size = picture_size(scene, self.interface.size_mode, viewport);
+        let output = viewport_ui(
+            ui,
+            &mut scene.camera,
+            &mut self.interface.navigation,
+            self.picture.shown().as_ref(),
+            size,
+            self.interface.display.zoom,
+            self.interface.picking,
+        );
+        if let Some(click) = output.click {
+            let (Click::For(_, x, y) | Click::TurnAbout(x, y)) = click;
+            self.work.session.pick(x, y);
+            self.awaited_click = Some(click);
+            self.interface.picking = None;
+        }
+        let (picture, clip) = (output.picture, output.rect);
+        if self.interface.lights_shown {
+            let selected = &mut self.interface.selection.light;
+            lights_in_picture(ui, picture, clip, scene, selected);
+        }
+        let chosen = self.pinned.as_mut().and_then(|pinned| pinned.show(ui, picture, clip, scene));
+        if let Some(choice) = chosen {
+            self.do_compare(scene, choice);
+        }
+        let is_free = self.awaited_click.is_none();
+        self.probe.follow(ui.ctx(), output.hovered_pixel, is_free, &self.work.session);
+        self.viewport = ViewportFacts {
+            size,
+            zoom_percent: output.zoom_percent,
+            hovered_pixel: output.hovered_pixel,
+            flying: output.flying,
+            rect: output.rect,
+        };
+    }
+
+    fn status_line(&self, frame: Option<&Frame>) -> StatusLine {
+        let status = self.work.session.status();
+        let work = match &status.phase {
+            Phase::Idle => Work::Idle,
+            Phase::Building => Work::Building,
+            Phase::Preview | Phase::Refining => Work::Rendering,
+            Phase::Paused => Work::Paused,
+            Phase::Done => Work::Done,
+            Phase::Failed(reason) => Work::Failed(reason.clone()),
+        };
+        let size = frame.map_or(self.viewport.size, |frame| [frame.job.width, frame.job.height]);
+        StatusLine {
+            work,
+            samples: (status.samples, status.goal_samples),
+            noise_percent: status.noise_percent,
+            seconds: status.seconds,
+            seconds_left: status.seconds_left,
+            rays_per_second: status.rays_per_second,
+            n_threads: status.n_threads,
+            size,
+            zoom_percent: self.viewport.zoom_percent,
+        }
+    }
+}
+
+/// The linear value of a pixel of the picture, from a frame that may be coarser.
+fn pixel_at(frame: &Frame, [x, y]: [u32; 2]) -> Option<PixelUnderCursor> {
+    let picture = &frame.picture;
+    let (column, row) = (x / frame.scale.max(1), y / frame.scale.max(1));
+    if picture.width <= column || picture.height <= row {
+        return None;
+    }
+    let index = row as usize * picture.width as usize + column as usize;
+    let linear = *picture.pixels.get(index)?;
+    Some(PixelUnderCursor { at: [x, y], linear })
+}
+
+/// Size and cost of the trees, name and value.
+fn tree_lines(tree: Option<&TreeStatistics>) -> Vec<(&'static str, String)> {
+    let Some(tree) = tree else { return Vec::new() };
+    vec![
+        ("Built in", format!("{:.0} ms", tree.build_secs * 1e3)),
+        ("Nodes", tree.n_nodes.to_string()),
+        ("Memory", format!("{:.1} MB", tree.n_bytes as f64 / 1e6)),
+    ]
+}

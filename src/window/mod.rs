@@ -1,0 +1,100 @@
+//! The desktop window: a viewport that sharpens while it is watched, and a panel with every
+//! setting of the scene.
+//!
+//! Each frame the panels edit the document's description in place; it is resolved, made a job and
+//! compared with the last one by the session. The window's own thread traces, loads, builds and
+//! waits for nothing. Only this module names egui.
+
+mod actions;
+mod app;
+mod background;
+mod color;
+mod compare;
+mod dialogs;
+mod fields;
+mod files;
+mod gesture;
+mod handles;
+mod help;
+mod incoming;
+mod keys;
+mod layout;
+mod navigation;
+mod output;
+mod panels;
+mod picture;
+mod presets;
+mod probe;
+mod recovery;
+mod relocate;
+mod state;
+mod status;
+mod structure;
+mod swatches;
+mod theme;
+mod toasts;
+mod toolbar;
+mod viewport;
+mod watch;
+mod widgets;
+mod work;
+
+use crate::loader::Source;
+use std::path::PathBuf;
+
+/// Names the program to the system, and its folder.
+const APP_ID: &str = "penumbra";
+/// The gallery scene that opens where no file is named.
+const FIRST_SCENE: &str = "final";
+
+/// Why the window could not be shown.
+#[derive(Debug, thiserror::Error)]
+pub enum WindowError {
+    /// No display to open a window on.
+    #[error(
+        "there is no display to open a window on; `penumbra render` makes pictures without one"
+    )]
+    NoDisplay,
+    /// The display refuses.
+    #[error("cannot open a window: {reason}; `penumbra render` makes pictures without one")]
+    NoWindow {
+        /// What the system said.
+        reason: String,
+    },
+}
+
+/// Opens the window on a scene, a mesh or a snapshot, or on the gallery's final scene, and stays
+/// until it is closed.
+///
+/// # Errors
+/// Where there is no display, or no way to draw on it.
+pub fn run(file: Option<PathBuf>) -> Result<(), WindowError> {
+    let first = file.map_or(Source::Gallery(FIRST_SCENE), Source::File);
+    let options = eframe::NativeOptions {
+        renderer: eframe::Renderer::Glow,
+        viewport: egui::ViewportBuilder::default()
+            .with_app_id(APP_ID)
+            .with_title("Penumbra")
+            .with_inner_size([1280.0, 800.0])
+            .with_min_inner_size([800.0, 520.0])
+            .with_drag_and_drop(true),
+        // What is rendered is shown bit by bit as it was made.
+        dithering: false,
+        ..eframe::NativeOptions::default()
+    };
+    let create: eframe::AppCreator<'_> = Box::new(move |cc| {
+        theme::install(&cc.egui_ctx);
+        let remembered = cc
+            .storage
+            .and_then(|storage| eframe::get_value(storage, state::Remembered::KEY))
+            .unwrap_or_default();
+        Ok(Box::new(app::App::new(&cc.egui_ctx, remembered, first, eframe::storage_dir(APP_ID))?))
+    });
+    eframe::run_native(APP_ID, options, create).map_err(|error| match error {
+        eframe::Error::WinitEventLoop(_) => WindowError::NoDisplay,
+        other => WindowError::NoWindow { reason: other.to_string() },
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,139 @@
+//! From the newest frame to a texture: tone mapping on a thread of its own, newest wins.
+//!
+//! The window's thread only hands over what should be shown and takes what is ready; a swap of a
+//! pointer under a lock is all that either thread waits for.
+
+use super::background::Background;
+use super::panels::PictureStatistics;
+use super::viewport::Shown;
+use crate::scene::description::{ToneMappingDescription, ToneOperator};
+use crate::session::Frame;
+use crate::tone_mapping::map_to_srgb8;
+use egui::{Color32, ColorImage, TextureFilter, TextureHandle, TextureOptions};
+use std::sync::Arc;
+
+/// The picture on show and the thread that prepares the next.
+pub(super) struct PictureDisplay {
+    thread: Background<Order, Displayed>,
+    asked: Option<Key>,
+    texture: Option<TextureHandle>,
+    size: [u32; 2],
+    image: Option<Arc<ColorImage>>,
+    statistics: Option<PictureStatistics>,
+}
+
+/// What decides the bytes of a displayed picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Key {
+    generation: u64,
+    sequence: u64,
+    exposure: f64,
+    operator: ToneOperator,
+}
+
+struct Order {
+    frame: Arc<Frame>,
+    exposure: f64,
+    operator: ToneOperator,
+}
+
+struct Displayed {
+    image: Arc<ColorImage>,
+    size: [u32; 2],
+    is_coarse: bool,
+    statistics: PictureStatistics,
+}
+
+impl PictureDisplay {
+    /// Starts the thread; `wake` is called when a picture is ready.
+    ///
+    /// # Errors
+    /// When the system has no thread left.
+    pub(super) fn new(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+        let mut bytes = Vec::new();
+        let prepare = move |order: Order| display(&order, &mut bytes);
+        Ok(Self {
+            thread: Background::new("display", prepare, wake)?,
+            asked: None,
+            texture: None,
+            size: [1, 1],
+            image: None,
+            statistics: None,
+        })
+    }
+
+    /// Asks for this frame to be shown with that tone mapping; asking again changes nothing.
+    pub(super) fn show(&mut self, frame: &Arc<Frame>, tone: &ToneMappingDescription) {
+        let key = Key {
+            generation: frame.generation,
+            sequence: frame.sequence,
+            exposure: tone.exposure,
+            operator: tone.operator,
+        };
+        if self.asked == Some(key) {
+            return;
+        }
+        self.asked = Some(key);
+        let frame = Arc::clone(frame);
+        self.thread.order(Order { frame, exposure: tone.exposure, operator: tone.operator });
+    }
+
+    /// Brings a picture that is ready to the graphics card.
+    pub(super) fn update(&mut self, ctx: &egui::Context) {
+        let Some(ready) = self.thread.take() else { return };
+        let options = texture_options(ready.is_coarse);
+        let image = Arc::clone(&ready.image);
+        match &mut self.texture {
+            Some(texture) => texture.set(image, options),
+            None => self.texture = Some(ctx.load_texture("picture", image, options)),
+        }
+        self.size = ready.size;
+        self.image = Some(ready.image);
+        self.statistics = Some(ready.statistics);
+    }
+
+    /// The picture on show, once there is one.
+    pub(super) fn shown(&self) -> Option<Shown<'_>> {
+        self.texture.as_ref().map(|texture| Shown { texture, size: self.size })
+    }
+
+    /// The bytes on show.
+    pub(super) fn image(&self) -> Option<&Arc<ColorImage>> {
+        self.image.as_ref()
+    }
+
+    /// Histogram of the picture on show.
+    pub(super) fn statistics(&self) -> Option<&PictureStatistics> {
+        self.statistics.as_ref()
+    }
+}
+
+fn display(order: &Order, bytes: &mut Vec<[u8; 3]>) -> Displayed {
+    let picture = &order.frame.picture;
+    bytes.clear();
+    bytes.resize(picture.pixels.len(), [0; 3]);
+    map_to_srgb8(&picture.pixels, order.exposure as f32, order.operator, bytes);
+    let mut histogram = [[0_u32; 64]; 3];
+    let pixels = bytes
+        .iter()
+        .map(|rgb| {
+            for (counts, value) in histogram.iter_mut().zip(rgb) {
+                counts[usize::from(*value / 4)] += 1;
+            }
+            Color32::from_rgb(rgb[0], rgb[1], rgb[2])
+        })
+        .collect();
+    let size = [picture.width as usize, picture.height as usize];
+    Displayed {
+        image: Arc::new(ColorImage::new(size, pixels)),
+        size: [order.frame.job.width, order.frame.job.height],
+        is_coarse: 1 < order.frame.scale,
+        statistics: PictureStatistics { histogram },
+    }
+}
+
+/// A full picture shows its pixels when enlarged; a coarse one is smoothed.
+fn texture_options(is_coarse: bool) -> TextureOptions {
+    let magnification = if is_coarse { TextureFilter::Linear } else { TextureFilter::Nearest };
+    TextureOptions { magnification, ..TextureOptions::LINEAR }
+}

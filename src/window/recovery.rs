@@ -1,0 +1,131 @@
+//! After a crash the scene is still there: while it has unsaved edits, a copy is kept in the
+//! program's own folder, as a snapshot without a picture.
+
+use super::app::App;
+use super::files::Written;
+use crate::io::output::{encode_png, replace_file};
+use crate::io::snapshot;
+use crate::loader::Source;
+use crate::scene::description::SceneDescription;
+use egui::{Align2, Id, RichText, Vec2};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Seconds between two copies.
+const PERIOD_SECS: f64 = 15.0;
+
+/// The copy on disk, and what this window knows of it.
+#[derive(Debug, Default)]
+pub(super) struct Recovery {
+    /// Where it is kept; `None` where there is no such place.
+    path: Option<PathBuf>,
+    /// Whether one from an earlier, crashed window is there.
+    offered: bool,
+    /// Whether this window has written one.
+    written: bool,
+    last_time: f64,
+    /// What the copy holds.
+    copied: Option<SceneDescription>,
+}
+
+impl Recovery {
+    /// Looks whether a copy was left behind in that folder.
+    pub(super) fn new(folder: Option<PathBuf>) -> Self {
+        let path = folder.map(|folder| folder.join("recovery.png"));
+        let offered = path.as_ref().is_some_and(|path| path.is_file());
+        Self { path, offered, written: false, last_time: 0.0, copied: None }
+    }
+
+    /// Removes the copy: everything is saved, or let go on purpose.
+    pub(super) fn forget(&mut self) {
+        if let Some(path) = self.path.as_ref().filter(|_| self.written) {
+            // Where it cannot be removed it is offered next time; nothing is lost.
+            let _ = std::fs::remove_file(path);
+        }
+        self.written = false;
+        self.copied = None;
+    }
+}
+
+impl App {
+    /// Keeps a copy of unsaved edits every so often.
+    pub(super) fn keep_copy(&mut self, ctx: &egui::Context) {
+        let now = ctx.input(|input| input.time);
+        let is_dirty = self.document.is_dirty();
+        if !is_dirty {
+            self.recovery.forget();
+        }
+        let is_kept = self.recovery.copied.as_ref() == Some(&self.document.description);
+        if !is_dirty || is_kept || self.recovery.offered {
+            return;
+        }
+        let left = PERIOD_SECS - (now - self.recovery.last_time);
+        if 0.0 < left {
+            ctx.request_repaint_after(Duration::from_secs_f64(left));
+            return;
+        }
+        self.recovery.last_time = now;
+        let Some(path) = self.recovery.path.clone() else { return };
+        self.recovery.written = true;
+        let description = self.document.description.clone();
+        self.recovery.copied = Some(description.clone());
+        let (folder, records) = (self.files.folder.clone(), self.files.records.clone());
+        self.files.write(ctx, move || {
+            let render = &description.render;
+            let size = (render.width, render.height);
+            let texts =
+                snapshot::texts(&description, size, render.samples, &records, Some(&folder));
+            let written = texts
+                .map_err(|error| error.to_string())
+                .and_then(|texts| {
+                    encode_png((1, 1), &[0; 3], &texts).map_err(|error| error.to_string())
+                })
+                .and_then(|bytes| replace_file(&path, &bytes).map_err(|error| error.to_string()));
+            match written {
+                Ok(()) => Written::Copy,
+                Err(reason) => {
+                    Written::Failed(format!("cannot keep a copy of your edits: {reason}"))
+                }
+            }
+        });
+    }
+
+    /// Offers the copy that a crashed window left behind.
+    pub(super) fn offer_copy(&mut self, ctx: &egui::Context) {
+        let Some(path) = self.recovery.path.clone().filter(|_| self.recovery.offered) else {
+            return;
+        };
+        let answer = egui::Area::new(Id::unique("recovery"))
+            .order(egui::Order::Foreground)
+            .anchor(Align2::CENTER_TOP, Vec2::new(0.0, 64.0))
+            .show(ctx, |ui| {
+                egui::Frame::popup(ui.style())
+                    .inner_margin(14)
+                    .show(ui, |ui| {
+                        ui.label(RichText::new("Penumbra was not closed properly").strong());
+                        ui.label("A copy of the scene that was being edited is there.");
+                        ui.add_space(6.0);
+                        ui.horizontal(|ui| {
+                            let restore = ui.button("Restore it").clicked();
+                            let drop = ui.button("Let it go").clicked();
+                            (restore, drop)
+                        })
+                        .inner
+                    })
+                    .inner
+            })
+            .inner;
+        let (restore, drop) = answer;
+        if restore {
+            self.open(Source::File(path.clone()));
+        }
+        if restore || drop {
+            self.recovery.offered = false;
+            // It is written again as soon as there is an edit to keep.
+            self.recovery.written = drop;
+            if drop {
+                self.recovery.forget();
+            }
+        }
+    }
+}

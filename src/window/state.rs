@@ -1,0 +1,145 @@
+//! What the window remembers beside the scene: how it is laid out and what is chosen in it.
+
+use super::navigation::Navigation;
+use super::panels::{DisplayState, Limits, PickFor, Selection, SizeMode};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// Files named in the menu of recent ones.
+const MOST_RECENT: usize = 10;
+
+/// State of the interface. Nothing in it changes the picture of a given job.
+#[derive(Clone, Debug)]
+pub(super) struct InterfaceState {
+    /// Which parts are being edited.
+    pub(super) selection: Selection,
+    /// Zoom of the picture.
+    pub(super) display: DisplayState,
+    /// Whether the picture follows the window's size.
+    pub(super) size_mode: SizeMode,
+    /// Index in the list of accelerators.
+    pub(super) accelerator: usize,
+    /// The point the camera turns about.
+    pub(super) navigation: Navigation,
+    /// What the next click in the picture is for, if it is for anything.
+    pub(super) picking: Option<PickFor>,
+    /// Whether lights are marked in the picture.
+    pub(super) lights_shown: bool,
+    /// When refining stops before its samples are reached.
+    pub(super) limits: Limits,
+    /// Whether refining is held.
+    pub(super) is_paused: bool,
+    /// Whether the panel is shown.
+    pub(super) panel_shown: bool,
+    /// Whether the list of keys is shown.
+    pub(super) help_shown: bool,
+    /// What one scene unit stands for in f-numbers, in millimetres.
+    pub(super) scene_unit_mm: f64,
+    /// The lens radius that D gives back, in scene units.
+    pub(super) lens_when_open: Option<f64>,
+    /// Files opened before, newest first.
+    pub(super) recent: Vec<PathBuf>,
+}
+
+impl Default for InterfaceState {
+    fn default() -> Self {
+        Self {
+            selection: Selection::default(),
+            display: DisplayState::default(),
+            size_mode: SizeMode::default(),
+            accelerator: 0,
+            navigation: Navigation::default(),
+            picking: None,
+            lights_shown: false,
+            limits: Limits::default(),
+            is_paused: false,
+            panel_shown: true,
+            help_shown: false,
+            scene_unit_mm: 100.0,
+            lens_when_open: None,
+            recent: Vec::new(),
+        }
+    }
+}
+
+/// The part of the state that outlives the program.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub(super) struct Remembered {
+    panel_shown: bool,
+    fixed_size: bool,
+    scene_unit_mm: f64,
+    recent: Vec<PathBuf>,
+}
+
+impl Default for Remembered {
+    fn default() -> Self {
+        Self::of(&InterfaceState::default())
+    }
+}
+
+impl Remembered {
+    /// Where it is kept in the program's storage.
+    pub(super) const KEY: &'static str = "penumbra";
+
+    /// What of this state is kept.
+    pub(super) fn of(state: &InterfaceState) -> Self {
+        Self {
+            panel_shown: state.panel_shown,
+            fixed_size: state.size_mode == SizeMode::Fixed,
+            scene_unit_mm: state.scene_unit_mm,
+            recent: state.recent.clone(),
+        }
+    }
+
+    /// A fresh state with what was kept.
+    pub(super) fn restore(self) -> InterfaceState {
+        InterfaceState {
+            panel_shown: self.panel_shown,
+            size_mode: if self.fixed_size { SizeMode::Fixed } else { SizeMode::Window },
+            scene_unit_mm: self.scene_unit_mm,
+            recent: self.recent,
+            ..InterfaceState::default()
+        }
+    }
+}
+
+impl InterfaceState {
+    /// Forgets what belongs to the scene that was open.
+    pub(super) fn forget_scene(&mut self) {
+        self.selection = Selection::default();
+        self.navigation = Navigation::default();
+        self.picking = None;
+        self.lens_when_open = None;
+    }
+
+    /// Puts a file at the head of the recent ones.
+    pub(super) fn remember_file(&mut self, path: PathBuf) {
+        self.recent.retain(|known| *known != path);
+        self.recent.insert(0, path);
+        self.recent.truncate(MOST_RECENT);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn recent_files_are_named_once_newest_first() {
+        let mut state = InterfaceState::default();
+        for name in ["a", "b", "a"] {
+            state.remember_file(PathBuf::from(name));
+        }
+        assert_eq!(state.recent, [PathBuf::from("a"), PathBuf::from("b")], "another order");
+    }
+
+    #[test]
+    fn what_is_remembered_comes_back() {
+        let mut state = InterfaceState { panel_shown: false, ..InterfaceState::default() };
+        state.size_mode = SizeMode::Fixed;
+        state.remember_file(PathBuf::from("a.toml"));
+        let kept = Remembered::of(&state);
+        assert_eq!(Remembered::of(&kept.clone().restore()), kept, "something was lost");
+    }
+}

@@ -1,0 +1,216 @@
+//! The status bar: what the renderer is doing, in words and figures that never flatter.
+
+use super::theme;
+use super::widgets::short;
+use egui::{RichText, Ui, Vec2};
+
+/// What the bar says, already measured.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct StatusLine {
+    /// What is going on.
+    pub(super) work: Work,
+    /// Whole passes so far, and how many make the picture done.
+    pub(super) samples: (u32, u32),
+    /// 100 x estimated RMSE over mean, where there is an estimate.
+    pub(super) noise_percent: Option<f64>,
+    /// Render time so far, in seconds.
+    pub(super) seconds: f64,
+    /// Estimated time to the goal, in seconds.
+    pub(super) seconds_left: Option<f64>,
+    /// Rays per second over the last while.
+    pub(super) rays_per_second: f64,
+    /// Render threads.
+    pub(super) n_threads: usize,
+    /// Size of the picture in pixels, and its zoom in percent.
+    pub(super) size: [u32; 2],
+    /// Screen pixels per picture pixel, times 100.
+    pub(super) zoom_percent: f64,
+}
+
+/// What is going on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Work {
+    /// Nothing to show yet.
+    Idle,
+    /// The tree over the scene is being built.
+    Building,
+    /// Samples are being added.
+    Rendering,
+    /// Held by the user.
+    Paused,
+    /// The goal is reached.
+    Done,
+    /// The renderer failed.
+    Failed(String),
+}
+
+/// What is under the cursor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PixelUnderCursor {
+    /// Column and row from the top left.
+    pub(super) at: [u32; 2],
+    /// Linear RGB.
+    pub(super) linear: [f32; 3],
+}
+
+/// What is under the resting cursor.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Probed {
+    /// Name of the object.
+    pub(super) object: String,
+    /// Distance along the view, in scene units.
+    pub(super) depth: f64,
+    /// Diameter of its blur in pixels.
+    pub(super) blur_px: f64,
+}
+
+/// Shows the bar: the work on the left, the pixel under the cursor and the size on the right.
+pub(super) fn status_ui(
+    ui: &mut Ui,
+    line: &StatusLine,
+    pixel: Option<PixelUnderCursor>,
+    probed: Option<&Probed>,
+) {
+    progress_line(ui, line);
+    ui.horizontal_centered(|ui| {
+        let [n_done, n_goal] = [line.samples.0, line.samples.1];
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let size = format!("{}×{} @ {} %", line.size[0], line.size[1], short(line.zoom_percent));
+        let strong = RichText::new(work_text(&line.work, n_done, n_goal)).strong();
+        ui.add(egui::Label::new(strong).truncate());
+        let room_for_details = ui.available_width() > 360.0;
+        let details = if room_for_details { details(line) } else { String::new() };
+        ui.label(RichText::new(details).weak());
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.label(RichText::new(size).weak());
+            if let Some(pixel) = pixel
+                && ui.available_width() > 250.0
+            {
+                ui.label(RichText::new(pixel_text(pixel)).weak())
+                    .on_hover_text("the pixel under the cursor: column, row, linear RGB");
+                if let Some(probed) = probed
+                    && ui.available_width() > 260.0
+                {
+                    ui.label(RichText::new(probed_text(probed)).weak()).on_hover_text(
+                        "what is under the cursor: object, depth, diameter of its blur",
+                    );
+                }
+            }
+        });
+    });
+}
+
+/// A thin line at the top of the bar, as long as the work is far.
+fn progress_line(ui: &mut Ui, line: &StatusLine) {
+    let bar = ui.max_rect().expand2(Vec2::new(8.0, 0.0));
+    let share = match line.work {
+        Work::Idle | Work::Building | Work::Failed(_) => 0.0,
+        Work::Rendering | Work::Paused => {
+            f64::from(line.samples.0) / f64::from(line.samples.1.max(1))
+        }
+        Work::Done => 1.0,
+    };
+    let mut filled = bar.with_max_y(bar.top() + 2.0);
+    filled.set_right(bar.left() + bar.width() * share.clamp(0.0, 1.0) as f32);
+    let color = match line.work {
+        Work::Paused | Work::Done => ui.visuals().weak_text_color(),
+        _ => theme::accent(ui.visuals()),
+    };
+    ui.painter().rect_filled(filled, 0.0, color);
+}
+
+fn work_text(work: &Work, n_done: u32, n_goal: u32) -> String {
+    match work {
+        Work::Idle => "ready".to_owned(),
+        Work::Building => "building the tree".to_owned(),
+        Work::Rendering => format!("rendering {n_done}/{n_goal}"),
+        Work::Paused => format!("paused {n_done}/{n_goal}"),
+        Work::Done => format!("done {n_done}/{n_goal}"),
+        Work::Failed(reason) => format!("failed: {reason}"),
+    }
+}
+
+/// Everything behind the first words, parted by dots.
+fn details(line: &StatusLine) -> String {
+    let mut parts = Vec::new();
+    let working = matches!(line.work, Work::Rendering);
+    if let Some(noise) = line.noise_percent {
+        parts.push(format!("noise {noise:.1} %"));
+    }
+    if line.seconds > 0.0 {
+        let left = line.seconds_left.filter(|_| working);
+        let left = left.map_or(String::new(), |left| format!(", {} left", duration(left)));
+        parts.push(format!("{}{left}", duration(line.seconds)));
+    }
+    if working && line.rays_per_second > 0.0 {
+        parts.push(format!("{:.1} Mrays/s", line.rays_per_second / 1e6));
+    }
+    if line.n_threads > 0 {
+        let s = if line.n_threads == 1 { "" } else { "s" };
+        parts.push(format!("{} thread{s}", line.n_threads));
+    }
+    parts.iter().map(|part| format!("· {part} ")).collect::<String>().trim_end().to_owned()
+}
+
+/// Seconds as a person says them, rounded down.
+pub(super) fn duration(seconds: f64) -> String {
+    let whole = seconds.max(0.0) as u64;
+    match whole {
+        0..60 => format!("{whole} s"),
+        60..3600 => format!("{} min {:02} s", whole / 60, whole % 60),
+        _ => format!("{} h {:02} min", whole / 3600, whole / 60 % 60),
+    }
+}
+
+fn pixel_text(pixel: PixelUnderCursor) -> String {
+    let [r, g, b] = pixel.linear;
+    format!("{}, {}: {r:.3} {g:.3} {b:.3} ·", pixel.at[0], pixel.at[1])
+}
+
+fn probed_text(probed: &Probed) -> String {
+    let Probed { object, depth, blur_px } = probed;
+    format!("{object} · depth {} · blur {blur_px:.1} px ·", short(*depth))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(work: Work) -> StatusLine {
+        StatusLine {
+            work,
+            samples: (48, 256),
+            noise_percent: Some(2.13),
+            seconds: 3.9,
+            seconds_left: Some(12.9),
+            rays_per_second: 8.4e6,
+            n_threads: 2,
+            size: [1280, 720],
+            zoom_percent: 100.0,
+        }
+    }
+
+    #[test]
+    fn the_line_tells_samples_noise_time_rate_and_threads() {
+        let line = line(Work::Rendering);
+        let told = format!("{} {}", work_text(&line.work, 48, 256), details(&line));
+        let expected = "rendering 48/256 · noise 2.1 % · 3 s, 12 s left · 8.4 Mrays/s · 2 threads";
+        assert_eq!(told, expected, "the line reads differently");
+    }
+
+    #[test]
+    fn done_is_a_state_and_promises_no_more_time() {
+        let line = line(Work::Done);
+        assert!(work_text(&line.work, 256, 256).starts_with("done"), "not said to be done");
+        assert!(!details(&line).contains("left"), "done, yet: {}", details(&line));
+    }
+
+    #[test]
+    fn durations_are_rounded_down() {
+        for (seconds, said) in
+            [(0.99, "0 s"), (59.99, "59 s"), (61.5, "1 min 01 s"), (3725.0, "1 h 02 min")]
+        {
+            assert_eq!(duration(seconds), said, "for {seconds}");
+        }
+    }
+}

@@ -1,0 +1,340 @@
+//! Each control of the panels changes the parameter that it names, and no other.
+
+use super::small_scene;
+use crate::scene::description::{
+    ColorOrTexture, IntegratorKind, LightKind, SceneDescription, ToneOperator, WardForm,
+};
+use crate::window::panels::{
+    DisplayState, Limits, PickFor, RenderFacts, Selection, SizeMode, camera_ui, display_ui,
+    lights_ui, materials_ui, objects_ui, render_ui, textures_ui,
+};
+use crate::window::theme;
+use egui::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+/// What a panel under test edits.
+struct Bench {
+    scene: SceneDescription,
+    selection: Selection,
+    size_mode: SizeMode,
+    accelerator: usize,
+    display: DisplayState,
+    unit_mm: f64,
+    picking: Option<PickFor>,
+    lights_shown: bool,
+    limits: Limits,
+}
+
+type Panel = fn(&mut egui::Ui, &mut Bench);
+
+const CAMERA: Panel = |ui, bench| {
+    camera_ui(ui, &mut bench.scene.camera, &mut bench.unit_mm, &mut bench.picking);
+};
+const LIGHTS: Panel = |ui, bench| {
+    let (picking, shown) = (&mut bench.picking, &mut bench.lights_shown);
+    lights_ui(ui, &mut bench.scene, &mut bench.selection, picking, shown);
+};
+const MATERIALS: Panel =
+    |ui, bench| materials_ui(ui, &mut bench.scene, &mut bench.selection, |_, _, _| ());
+const TEXTURES: Panel =
+    |ui, bench| textures_ui(ui, &mut bench.scene, &mut bench.selection, |_, _| ());
+const OBJECTS: Panel = |ui, bench| objects_ui(ui, &mut bench.scene, &mut bench.selection);
+const DISPLAY: Panel =
+    |ui, bench| display_ui(ui, &mut bench.scene.tone_mapping, &mut bench.display, None);
+const RENDER: Panel = |ui, bench| {
+    let facts = RenderFacts {
+        accelerators: &["kd-tree", "brute-force"],
+        tree: vec![("Nodes", "12".to_owned())],
+        seconds: 1.0,
+        noise: &[(1, 20.0), (4, 10.0)],
+    };
+    let (size, accelerator) = (&mut bench.size_mode, &mut bench.accelerator);
+    let limits = &mut bench.limits;
+    render_ui(ui, &mut bench.scene.render, size, accelerator, limits, &facts);
+};
+const ALL: [Panel; 7] = [CAMERA, LIGHTS, MATERIALS, TEXTURES, OBJECTS, DISPLAY, RENDER];
+
+fn harness(panel: Panel) -> Harness<'static, Bench> {
+    let bench = Bench {
+        scene: small_scene(),
+        selection: Selection::default(),
+        size_mode: SizeMode::Fixed,
+        accelerator: 0,
+        display: DisplayState::default(),
+        unit_mm: 100.0,
+        picking: None,
+        lights_shown: false,
+        limits: Limits::default(),
+    };
+    let mut installed = false;
+    let mut harness = Harness::builder().with_size([320.0, 900.0]).build_ui_state(
+        move |ui, bench: &mut Bench| {
+            if !std::mem::replace(&mut installed, true) {
+                theme::install(ui.ctx());
+            }
+            panel(ui, bench);
+        },
+        bench,
+    );
+    harness.run();
+    harness
+}
+
+/// Types a figure into the box of that name.
+fn type_figure(harness: &mut Harness<'_, Bench>, label: &str, text: &str) {
+    harness.get_by_role_and_label(Role::SpinButton, label).click();
+    harness.run();
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    harness.event(egui::Event::Text(text.to_owned()));
+    harness.key_press(egui::Key::Enter);
+    harness.run();
+}
+
+fn slide(harness: &mut Harness<'_, Bench>, label: &str, value: f64) {
+    harness.get_by_role_and_label(Role::Slider, label).set_value_accesskit(value);
+    harness.run();
+}
+
+/// Chooses from the list of that name.
+fn choose(harness: &mut Harness<'_, Bench>, label: &str, option: &str) {
+    harness.get_by_role_and_label(Role::ComboBox, label).click();
+    harness.run();
+    harness.get_by_role_and_label(Role::Button, option).click();
+    harness.run();
+}
+
+fn press(harness: &mut Harness<'_, Bench>, label: &str) {
+    harness.get_by_role_and_label(Role::Button, label).click();
+    harness.run();
+}
+
+#[test]
+fn showing_a_panel_changes_nothing() {
+    for panel in ALL {
+        let mut harness = harness(panel);
+        harness.run();
+        assert_eq!(harness.state().scene, small_scene(), "a panel edits by being shown");
+    }
+}
+
+#[test]
+fn typed_figures_keep_their_full_precision() {
+    let mut harness = harness(CAMERA);
+    type_figure(&mut harness, "Aperture", "0.012345678901234");
+    let radius = harness.state().scene.camera.aperture_radius;
+    assert_eq!(radius, 0.012345678901234, "rounded to {radius}");
+}
+
+#[test]
+fn leaving_a_box_without_typing_rounds_nothing() {
+    let mut harness = harness(CAMERA);
+    harness.state_mut().scene.camera.aperture_radius = 0.123456789012345;
+    harness.run();
+    harness.get_by_role_and_label(Role::SpinButton, "Aperture").click();
+    harness.run();
+    harness.key_press(egui::Key::Enter);
+    harness.run();
+    let radius = harness.state().scene.camera.aperture_radius;
+    assert_eq!(radius, 0.123456789012345, "rounded to {radius}");
+}
+
+#[test]
+fn the_lens_follows_its_controls() {
+    let mut harness = harness(CAMERA);
+    slide(&mut harness, "Aperture", 0.2);
+    type_figure(&mut harness, "Focus", "4.5");
+    type_figure(&mut harness, "Field of view", "55");
+    type_figure(&mut harness, "Blades", "6");
+    let mut expected = small_scene();
+    expected.camera.aperture_radius = 0.2;
+    expected.camera.focal_distance = Some(4.5);
+    expected.camera.vertical_fov = 55.0;
+    expected.camera.aperture_blades = 6;
+    assert_eq!(harness.state().scene, expected, "the camera differs");
+    press(&mut harness, "On target");
+    assert_eq!(harness.state().scene.camera.focal_distance, None, "does not follow the target");
+}
+
+#[test]
+fn figures_out_of_range_are_held_to_it() {
+    let mut harness = harness(CAMERA);
+    type_figure(&mut harness, "Field of view", "500");
+    type_figure(&mut harness, "Aperture", "-3");
+    type_figure(&mut harness, "Eye X", "nan");
+    let camera = &harness.state().scene.camera;
+    assert!(camera.vertical_fov < 180.0, "field of view {}", camera.vertical_fov);
+    assert_eq!(camera.aperture_radius, 0.0, "a negative lens");
+    assert_eq!(camera.eye, small_scene().camera.eye, "took a number that is none");
+}
+
+#[test]
+fn lights_follow_their_controls() {
+    let mut harness = harness(LIGHTS);
+    type_figure(&mut harness, "Power", "250");
+    type_figure(&mut harness, "Width", "2.5");
+    type_figure(&mut harness, "Position Y", "7");
+    harness.get_by_role_and_label(Role::CheckBox, "Visible").click();
+    harness.run();
+    let light = &harness.state().scene.lights[0];
+    assert_eq!(light.power, [250.0; 3], "another power");
+    assert_eq!(light.size.pair(), [2.5, 1.0], "another size");
+    assert_eq!(light.position, [2.0, 7.0, 3.0], "another place");
+    assert!(!light.visible, "still visible");
+    choose(&mut harness, "Light type", "Disk");
+    let light = &harness.state().scene.lights[0];
+    assert_eq!(light.kind, LightKind::Disk, "another kind");
+    crate::io::scene_file::validate(&harness.state().scene).expect("the scene stays valid");
+}
+
+#[test]
+fn one_side_of_a_rectangle_at_zero_closes_both() {
+    let mut harness = harness(LIGHTS);
+    type_figure(&mut harness, "Width", "0");
+    crate::io::scene_file::validate(&harness.state().scene).expect("the scene stays valid");
+}
+
+#[test]
+fn parts_are_added_copied_renamed_and_removed() {
+    let mut harness = harness(LIGHTS);
+    press(&mut harness, "Add");
+    press(&mut harness, "Copy");
+    assert_eq!(harness.state().scene.lights.len(), 3, "not added and copied");
+    press(&mut harness, "Rename");
+    let field = harness.get_by_role_and_label(Role::TextInput, "Light name");
+    field.focus();
+    harness.run();
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    harness.event(egui::Event::Text("rim".to_owned()));
+    harness.key_press(egui::Key::Enter);
+    harness.run();
+    assert_eq!(harness.state().scene.lights[2].name, "rim", "not renamed");
+    press(&mut harness, "Delete");
+    let names: Vec<&str> =
+        harness.state().scene.lights.iter().map(|light| light.name.as_str()).collect();
+    assert_eq!(names, ["key", "light-1"], "another one was removed");
+}
+
+#[test]
+fn gloss_follows_its_controls() {
+    let mut harness = harness(MATERIALS);
+    type_figure(&mut harness, "Alpha x", "0.08");
+    type_figure(&mut harness, "Alpha y", "0.4");
+    press(&mut harness, "Form: Bounded");
+    type_figure(&mut harness, "Refraction", "1.33");
+    let material = &harness.state().scene.materials[0];
+    assert_eq!((material.alpha_x, material.alpha_y), (0.08, 0.4), "other roughness");
+    assert_eq!(material.ward, WardForm::Bounded, "another form");
+    assert_eq!(material.ior, 1.33, "another glass");
+    harness.get_by_role_and_label(Role::CheckBox, "Link alpha x and y").click();
+    harness.run();
+    type_figure(&mut harness, "Alpha x", "0.2");
+    let material = &harness.state().scene.materials[0];
+    assert_eq!((material.alpha_x, material.alpha_y), (0.2, 0.2), "not linked");
+}
+
+#[test]
+fn a_diffuse_colour_can_come_from_a_texture_and_a_preset_replaces_it() {
+    let mut harness = harness(MATERIALS);
+    choose(&mut harness, "Diffuse from", "veins");
+    let veins = ColorOrTexture::Texture("veins".to_owned());
+    assert_eq!(harness.state().scene.materials[0].diffuse, veins, "another colour");
+    choose(&mut harness, "Material preset", "Mirror");
+    assert_eq!(harness.state().scene.materials[0].reflection, [0.92; 3], "no mirror");
+}
+
+#[test]
+fn another_material_can_be_chosen_and_edited() {
+    let mut harness = harness(MATERIALS);
+    choose(&mut harness, "Material", "plain");
+    type_figure(&mut harness, "Alpha y", "0.3");
+    let mut expected = small_scene();
+    expected.materials[1].alpha_y = 0.3;
+    assert_eq!(harness.state().scene, expected, "another material was edited");
+}
+
+#[test]
+fn noise_follows_its_controls() {
+    let mut harness = harness(TEXTURES);
+    type_figure(&mut harness, "Scale", "7.5");
+    type_figure(&mut harness, "Octaves", "3");
+    type_figure(&mut harness, "Lacunarity", "2.2");
+    type_figure(&mut harness, "Gain", "0.6");
+    type_figure(&mut harness, "Distortion", "1.25");
+    press(&mut harness, "+");
+    let mut expected = small_scene();
+    let texture = &mut expected.textures[0];
+    texture.scale = 7.5;
+    texture.octaves = 3;
+    texture.lacunarity = 2.2;
+    texture.gain = 0.6;
+    texture.distortion = 1.25;
+    texture.colors = Some(vec![[0.9; 3], [0.1; 3], [0.1; 3]]);
+    assert_eq!(harness.state().scene, expected, "the texture differs");
+}
+
+#[test]
+fn a_colour_is_typed_in_linear_light() {
+    let mut harness = harness(MATERIALS);
+    harness.get_by_role_and_label(Role::ColorWell, "Specular").click();
+    harness.run();
+    type_figure(&mut harness, "Specular: green", "0.25");
+    let specular = harness.state().scene.materials[0].specular;
+    assert_eq!(specular, [0.0, 0.25, 0.0], "another colour");
+}
+
+#[test]
+fn objects_follow_their_controls() {
+    let mut harness = harness(OBJECTS);
+    type_figure(&mut harness, "Move Y", "0.5");
+    type_figure(&mut harness, "Radius", "0.75");
+    choose(&mut harness, "Made of", "plain");
+    harness.get_by_role_and_label(Role::CheckBox, "Enabled").click();
+    harness.run();
+    let object = &harness.state().scene.objects[0];
+    assert_eq!(object.translate, [0.0, 0.5, 0.0], "another place");
+    assert_eq!(object.radius, Some(0.75), "another radius");
+    assert_eq!(object.material.as_deref(), Some("plain"), "another material");
+    assert!(!object.enabled, "still enabled");
+    choose(&mut harness, "Shape", "Cylinder");
+    crate::io::scene_file::validate(&harness.state().scene).expect("the scene stays valid");
+}
+
+#[test]
+fn display_and_render_follow_their_controls() {
+    let mut shown = harness(DISPLAY);
+    type_figure(&mut shown, "Exposure", "1.5");
+    press(&mut shown, "Curve: ACES");
+    let tone = &shown.state().scene.tone_mapping;
+    assert_eq!((tone.exposure, tone.operator), (1.5, ToneOperator::Aces), "another display");
+
+    let mut rendered = harness(RENDER);
+    type_figure(&mut rendered, "Samples", "1000");
+    press(&mut rendered, "Light: Path");
+    choose(&mut rendered, "Accelerator", "brute-force");
+    let render = &rendered.state().scene.render;
+    assert_eq!((render.samples, render.integrator), (1000, IntegratorKind::Path), "other settings");
+    assert_eq!(rendered.state().accelerator, 1, "another accelerator");
+    press(&mut rendered, "Size: Window");
+    assert_eq!(rendered.state().size_mode, SizeMode::Window, "the size stays fixed");
+}
+
+#[test]
+fn a_mesh_is_entered_by_its_path() {
+    let mut harness = harness(OBJECTS);
+    harness.get_by_role_and_label(Role::TextInput, "Mesh file").click();
+    harness.run();
+    harness.event(egui::Event::Text("meshes/egg.obj".to_owned()));
+    harness.run();
+    assert_eq!(harness.state().scene, small_scene(), "every letter counts");
+    harness.key_press(egui::Key::Enter);
+    harness.run();
+    let object = &harness.state().scene.objects[0];
+    assert_eq!(object.file.as_deref(), Some("meshes/egg.obj"), "another file");
+    assert_eq!(object.kind, crate::scene::description::ObjectKind::Mesh, "no mesh");
+    harness.get_by_role_and_label(Role::CheckBox, "Scale each axis").click();
+    harness.run();
+    type_figure(&mut harness, "Scale Y", "2");
+    let scale = harness.state().scene.objects[0].scale.triple();
+    assert_eq!(scale, [1.0, 2.0, 1.0], "another scale");
+}

@@ -1,0 +1,128 @@
+//! Short messages at the foot of the picture: saves that pass by, errors that stay until read.
+
+use super::theme;
+use egui::{Align2, Id, RichText, Vec2};
+use std::time::Duration;
+
+/// How long a message that needs no answer stays.
+const SHOWN_FOR: Duration = Duration::from_secs(6);
+/// More than this at once would hide the picture: the oldest go.
+const MOST: usize = 4;
+
+/// The messages on show, oldest first.
+#[derive(Debug, Default)]
+pub(super) struct Toasts {
+    shown: Vec<Toast>,
+    n_ever: u64,
+    last_time: f64,
+}
+
+#[derive(Debug)]
+struct Toast {
+    id: u64,
+    text: String,
+    kind: Kind,
+    left: Duration,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Passing,
+    Error,
+}
+
+impl Toasts {
+    /// Says something that passes by.
+    pub(super) fn say(&mut self, text: impl Into<String>) {
+        self.push(text.into(), Kind::Passing);
+    }
+
+    /// Says what went wrong; stays until it is closed.
+    pub(super) fn fail(&mut self, text: impl Into<String>) {
+        self.push(text.into(), Kind::Error);
+    }
+
+    /// Closes the newest message. False where there was none.
+    pub(super) fn dismiss(&mut self) -> bool {
+        self.shown.pop().is_some()
+    }
+
+    /// Shows the messages above `bottom_center` and lets time pass for them.
+    pub(super) fn show(&mut self, ctx: &egui::Context, bottom_center: egui::Pos2) {
+        let now = ctx.input(|input| input.time);
+        let passed = Duration::from_secs_f64((now - self.last_time).clamp(0.0, 1.0));
+        self.last_time = now;
+        let mut closed = Vec::new();
+        let mut above = 0.0;
+        for toast in self.shown.iter_mut().rev() {
+            let area = egui::Area::new(Id::unique(("toast", toast.id)))
+                .order(egui::Order::Foreground)
+                .pivot(Align2::CENTER_BOTTOM)
+                .fixed_pos(bottom_center - Vec2::new(0.0, above))
+                .show(ctx, |ui| toast_ui(ui, toast));
+            above += area.response.rect.height() + 8.0;
+            let read = area.response.contains_pointer();
+            if toast.kind == Kind::Passing && !read {
+                toast.left = toast.left.saturating_sub(passed);
+            }
+            if area.inner || toast.left.is_zero() {
+                closed.push(toast.id);
+            }
+        }
+        self.shown.retain(|toast| !closed.contains(&toast.id));
+        if self.shown.iter().any(|toast| toast.kind == Kind::Passing) {
+            ctx.request_repaint_after(Duration::from_millis(200));
+        }
+    }
+
+    fn push(&mut self, text: String, kind: Kind) {
+        self.shown.retain(|toast| toast.text != text);
+        self.n_ever += 1;
+        self.shown.push(Toast { id: self.n_ever, text, kind, left: SHOWN_FOR });
+        let n_too_many = self.shown.len().saturating_sub(MOST);
+        self.shown.drain(..n_too_many);
+    }
+}
+
+/// One message; gives back whether it was closed.
+fn toast_ui(ui: &mut egui::Ui, toast: &Toast) -> bool {
+    let line = match toast.kind {
+        Kind::Passing => theme::hairline(ui.visuals()).color,
+        Kind::Error => ui.visuals().error_fg_color,
+    };
+    egui::Frame::popup(ui.style())
+        .inner_margin(egui::Margin::symmetric(12, 8))
+        .stroke(egui::Stroke::new(1.0, line))
+        .show(ui, |ui| {
+            ui.set_max_width(520.0);
+            ui.horizontal(|ui| {
+                let text = match toast.kind {
+                    Kind::Passing => RichText::new(&toast.text),
+                    Kind::Error => RichText::new(&toast.text).strong(),
+                };
+                let width = 440.0;
+                ui.scope(|ui| {
+                    ui.set_max_width(width);
+                    ui.add(egui::Label::new(text).wrap().selectable(true));
+                });
+                ui.button("Close").on_hover_text("closes this message (Esc)").clicked()
+            })
+            .inner
+        })
+        .inner
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_message_is_shown_once_and_the_oldest_make_room() {
+        let mut toasts = Toasts::default();
+        for text in ["a", "b", "b", "c", "d", "e"] {
+            toasts.say(text);
+        }
+        let texts: Vec<&str> = toasts.shown.iter().map(|toast| toast.text.as_str()).collect();
+        assert_eq!(texts, ["b", "c", "d", "e"], "other messages are shown");
+    }
+}

@@ -1,0 +1,348 @@
+//! The parts panels are made of: a named line, a figure with its slider, a colour, a choice.
+//!
+//! Every control writes to the description only on a real edit, so that showing a value never
+//! changes it, and keeps the full precision of what is typed. A right click on a control resets
+//! it or copies its parameter path.
+
+use super::theme::{FIGURE_WIDTH, LABEL_WIDTH, ROW_HEIGHT};
+use egui::{Response, Ui, Vec2};
+use std::ops::RangeInclusive;
+
+/// One line of a panel: the name on the left, `contents` in the rest. Gives back their result.
+pub(super) fn row<R>(
+    ui: &mut Ui,
+    label: &str,
+    help: &str,
+    contents: impl FnOnce(&mut Ui) -> R,
+) -> R {
+    ui.horizontal(|ui| {
+        ui.set_min_height(ROW_HEIGHT);
+        name_cell(ui, label, help);
+        contents(ui)
+    })
+    .inner
+}
+
+/// A figure with a name, a slider over the usual range and a box for any allowed value.
+pub(super) struct Figure<'a> {
+    label: &'a str,
+    path: String,
+    help: &'a str,
+    unit: &'a str,
+    usual: RangeInclusive<f64>,
+    allowed: RangeInclusive<f64>,
+    logarithmic_above: Option<f64>,
+    integer: bool,
+    default: Option<f64>,
+}
+
+impl<'a> Figure<'a> {
+    /// A figure of that parameter path; the slider spans `usual`, the box takes any number.
+    pub(super) fn new(label: &'a str, path: String, usual: RangeInclusive<f64>) -> Self {
+        Self {
+            label,
+            path,
+            help: "",
+            unit: "",
+            usual,
+            allowed: f64::MIN..=f64::MAX,
+            logarithmic_above: None,
+            integer: false,
+            default: None,
+        }
+    }
+
+    /// What it does, shown on hover.
+    pub(super) fn help(mut self, help: &'a str) -> Self {
+        self.help = help;
+        self
+    }
+
+    /// Written behind the figure.
+    pub(super) fn unit(mut self, unit: &'a str) -> Self {
+        self.unit = unit;
+        self
+    }
+
+    /// What a scene file accepts; typed values are held to it.
+    pub(super) fn allowed(mut self, allowed: RangeInclusive<f64>) -> Self {
+        self.allowed = allowed;
+        self
+    }
+
+    /// A logarithmic slider; `smallest` is its first step above 0.
+    pub(super) fn logarithmic(mut self, smallest: f64) -> Self {
+        self.logarithmic_above = Some(smallest);
+        self
+    }
+
+    /// The value that "reset" gives.
+    pub(super) fn default_value(mut self, default: f64) -> Self {
+        self.default = Some(default);
+        self
+    }
+
+    /// Shows the line and edits `value` in place.
+    pub(super) fn show(self, ui: &mut Ui, value: &mut f64) {
+        row(ui, self.label, self.help, |ui| {
+            let slider_width = ui.available_width() - FIGURE_WIDTH - ui.spacing().item_spacing.x;
+            ui.spacing_mut().slider_width = slider_width.max(24.0);
+            let mut slid = *value;
+            let mut slider = egui::Slider::new(&mut slid, self.usual.clone())
+                .show_value(false)
+                .clamping(egui::SliderClamping::Never);
+            if let Some(smallest) = self.logarithmic_above {
+                slider = slider.logarithmic(true).smallest_positive(smallest);
+            }
+            if self.integer {
+                slider = slider.integer();
+            }
+            let response = self.described(ui.add(slider));
+            if response.changed() {
+                self.write(value, slid);
+            }
+            self.menu(&response, value);
+            self.figure_box(ui, value);
+        });
+    }
+
+    /// Shows the line for a whole number and edits it in place.
+    pub(super) fn show_integer(mut self, ui: &mut Ui, value: &mut u32) {
+        self.integer = true;
+        let mut figure = f64::from(*value);
+        let lowest = self.allowed.start().max(0.0);
+        let highest = self.allowed.end().min(f64::from(u32::MAX));
+        self.allowed = lowest..=highest;
+        self.show(ui, &mut figure);
+        if figure != f64::from(*value) {
+            *value = figure.round() as u32;
+        }
+    }
+
+    fn figure_box(&self, ui: &mut Ui, value: &mut f64) {
+        let width = ui.available_width().min(FIGURE_WIDTH);
+        let integer = self.integer;
+        let mut typed = *value;
+        let response = number_box(ui, &mut typed, width, self.speed(*value), self.unit, integer);
+        let response = self.described(response);
+        if response.changed() {
+            self.write(value, typed);
+        }
+        self.menu(&response, value);
+    }
+
+    fn described(&self, response: Response) -> Response {
+        let response = response.accessible_name(self.label);
+        if self.help.is_empty() { response } else { response.on_hover_text(self.help) }
+    }
+
+    fn write(&self, value: &mut f64, new: f64) {
+        if new.is_finite() {
+            let held = new.clamp(*self.allowed.start(), *self.allowed.end());
+            *value = if self.integer { held.round() } else { held };
+        }
+    }
+
+    /// How much one point of dragging changes the figure.
+    fn speed(&self, value: f64) -> f64 {
+        if self.integer {
+            0.2
+        } else if self.logarithmic_above.is_some() {
+            (value.abs() * 0.01).max(1e-5)
+        } else {
+            let span = self.usual.end() - self.usual.start();
+            if span.is_finite() { span / 300.0 } else { 0.01 }
+        }
+    }
+
+    fn menu(&self, response: &Response, value: &mut f64) {
+        if let Some(reset) = parameter_menu(response, &self.path, self.default.is_some())
+            && reset
+            && let Some(default) = self.default
+        {
+            *value = default;
+        }
+    }
+}
+
+/// Three figures in one line: a point, a direction, three factors.
+pub(super) fn triple(
+    ui: &mut Ui,
+    label: &str,
+    path: &str,
+    help: &str,
+    speed: f64,
+    value: &mut [f64; 3],
+) {
+    row(ui, label, help, |ui| {
+        let gap = 3.0;
+        ui.spacing_mut().item_spacing.x = gap;
+        let width = ((ui.available_width() - 2.0 * gap) / 3.0).floor();
+        for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate() {
+            let mut typed = value[axis];
+            let response = number_box(ui, &mut typed, width, speed, "", false)
+                .accessible_name(format!("{label} {name}"))
+                .on_hover_text(format!("{name}. {help}"));
+            if response.changed() && typed.is_finite() {
+                value[axis] = typed;
+            }
+            let _ = parameter_menu(&response, path, false);
+        }
+    });
+}
+
+/// A choice among a few, side by side.
+pub(super) fn choice<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    label: &str,
+    help: &str,
+    value: &mut T,
+    options: &[(T, &str, &str)],
+) {
+    row(ui, label, help, |ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        ui.spacing_mut().button_padding.x = 2.0;
+        let n_options = options.len() as f32;
+        let width = ((ui.available_width() - 2.0 * (n_options - 1.0)) / n_options).floor();
+        for (option, name, explanation) in options {
+            let chosen = value == option;
+            let button = egui::Button::selectable(chosen, *name)
+                .frame_when_inactive(true)
+                .min_size(Vec2::new(width, ROW_HEIGHT));
+            let response = ui.add_sized([width, ROW_HEIGHT], button).on_hover_text(*explanation);
+            if response.accessible_name(format!("{label}: {name}")).clicked() && !chosen {
+                *value = *option;
+            }
+        }
+    });
+}
+
+/// A choice among many, in a list that opens. Gives back the chosen index on a click.
+pub(super) fn pick_one<'a>(
+    ui: &mut Ui,
+    label: &str,
+    shown: &str,
+    options: impl IntoIterator<Item = &'a str>,
+) -> Option<usize> {
+    let mut picked = None;
+    let response = egui::ComboBox::from_id_salt(label)
+        .width(ui.available_width())
+        .selected_text(shown)
+        .truncate()
+        .show_ui(ui, |ui| {
+            for (index, option) in options.into_iter().enumerate() {
+                if ui.selectable_label(option == shown, option).clicked() {
+                    picked = Some(index);
+                }
+            }
+        })
+        .response;
+    response.accessible_name(label);
+    picked
+}
+
+/// A switch with its name beside it, in the column of values.
+pub(super) fn switch(ui: &mut Ui, label: &str, help: &str, value: &mut bool) {
+    row(ui, "", "", |ui| {
+        let response = ui.checkbox(value, label);
+        if !help.is_empty() {
+            response.on_hover_text(help);
+        }
+    });
+}
+
+/// A box with a figure: drag to change, click to type. The unit stands behind it.
+pub(super) fn number_box(
+    ui: &mut Ui,
+    value: &mut f64,
+    width: f32,
+    speed: f64,
+    unit: &str,
+    integer: bool,
+) -> Response {
+    let typing = ui.memory(|memory| memory.has_focus(ui.next_auto_id()));
+    let drag = egui::DragValue::new(value)
+        .speed(speed)
+        .max_decimals(if integer { 0 } else { 6 })
+        .update_while_editing(false)
+        .clip_text(true)
+        .min_size(Vec2::new(width, ROW_HEIGHT))
+        .custom_formatter(move |figure, _| {
+            // While it is typed the whole figure shows, so that leaving the box rounds nothing.
+            if typing || integer { format!("{figure}") } else { short(figure) }
+        })
+        .suffix(if typing { String::new() } else { unit.to_owned() });
+    ui.add(drag)
+}
+
+/// At most five significant digits, without trailing zeros.
+pub(super) fn short(figure: f64) -> String {
+    if figure == 0.0 || !figure.is_finite() {
+        return format!("{figure}");
+    }
+    let magnitude = figure.abs().log10().floor();
+    if !(-5.0..7.0).contains(&magnitude) {
+        return format!("{figure:.3e}");
+    }
+    let decimals = (3.0 - magnitude).clamp(0.0, 8.0) as usize;
+    let text = format!("{figure:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// What a right click on a control offers. `Some(true)` where "reset" was chosen.
+pub(super) fn parameter_menu(response: &Response, path: &str, can_reset: bool) -> Option<bool> {
+    let mut reset = None;
+    response.context_menu(|ui| {
+        if can_reset && ui.button("Reset").clicked() {
+            reset = Some(true);
+        }
+        if ui.button("Copy path").on_hover_text(path).clicked() {
+            ui.copy_text(path.to_owned());
+            reset = Some(false);
+        }
+    });
+    reset
+}
+
+/// The name of a line, cut with an ellipsis where it is too long.
+fn name_cell(ui: &mut Ui, label: &str, help: &str) {
+    let size = Vec2::new(LABEL_WIDTH, ROW_HEIGHT);
+    let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+    if label.is_empty() {
+        return;
+    }
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    // A child of its own: the line goes on behind the whole column, however short the name.
+    let mut cell = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
+    let text = egui::RichText::new(label).weak();
+    let response = cell.add(egui::Label::new(text).truncate());
+    if !help.is_empty() {
+        response.on_hover_text(help);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short;
+
+    #[test]
+    fn figures_show_what_matters_and_no_more() {
+        for (figure, shown) in [
+            (0.0, "0"),
+            (5.0, "5"),
+            (0.15, "0.15"),
+            (0.123456, "0.1235"),
+            (1234.5678, "1235"),
+            (-2.5, "-2.5"),
+            (0.00002, "0.00002"),
+            (1e9, "1.000e9"),
+            (100.0, "100"),
+        ] {
+            assert_eq!(short(figure), shown, "for {figure}");
+        }
+    }
+}

@@ -1,0 +1,5 @@
+//! Radiance against closed forms and quadrature.
+
+mod gloss;
+mod lens;
+mod lights;

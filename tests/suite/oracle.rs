@@ -1,0 +1,3 @@
+//! Rays against brute force, and what must not depend on how rays are traced.
+
+mod rays;
