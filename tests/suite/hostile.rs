@@ -291,7 +291,7 @@ fn pictures_that_lie_are_refused() {
     ] {
         place.write(name, &bytes);
         let error = opened(&place, "s.toml", scene(name).as_bytes(), name).expect_err(name);
-        let is_located = error.contains("s.toml:44:8: textures.t.file") && error.contains(name);
+        let is_located = error.contains("s.toml:45:8: textures.t.file") && error.contains(name);
         assert!(is_located, "{error}");
         if name.ends_with(".png") {
             open(place.path(name), name).expect_err(name);
