@@ -32,9 +32,18 @@ pub fn excerpt(bytes: &[u8]) -> String {
     if head.len() < bytes.len() { text + "…" } else { text }
 }
 
-/// A path, safe to print on one line and whole: what cannot be printed is escaped.
+/// A path, safe to print on one line: what cannot be printed is escaped, and of one too long to be
+/// read both ends are shown.
 pub fn printable_path(path: &Path) -> String {
-    printable(&path.to_string_lossy())
+    const END_CHARS: usize = 200;
+    let path = path.to_string_lossy();
+    let n_chars = path.chars().count();
+    if n_chars <= 2 * END_CHARS {
+        return printable(&path);
+    }
+    let head: String = path.chars().take(END_CHARS).collect();
+    let tail: String = path.chars().skip(n_chars - END_CHARS).collect();
+    printable(&head) + "…" + &printable(&tail)
 }
 
 /// A text, safe to print on one line and whole: what cannot be printed is escaped.
@@ -84,5 +93,9 @@ mod tests {
         let path = "C:\\a b\u{1b}[0m\\".repeat(20);
         let expected = "C:\\a b\\u{1b}[0m\\".repeat(20);
         assert_eq!(printable_path(Path::new(&path)), expected);
+        let long = format!("a{}b", "x".repeat(100 << 10));
+        let shown = printable_path(Path::new(&long));
+        assert!(shown.starts_with("axx") && shown.ends_with("xxb"), "both ends");
+        assert_eq!(shown.chars().count(), 401, "no more");
     }
 }

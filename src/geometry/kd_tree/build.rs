@@ -4,6 +4,11 @@
 //! fast kd-Trees for Ray Tracing, and on doing that in O(N log N)", IEEE RT 2006. Large nodes are
 //! cut at the borders of bins and small ones at every border of an item, so that the whole build
 //! is O(n log n).
+//!
+//! An item that a cut goes through is in both halves. Thousands of triangles in one place, or in a
+//! fan of needles, would be in almost every leaf: memory and time would grow with the number of
+//! leaves. So every tree has a budget of such copies, handed down in proportion to the items, and
+//! what would cost more stays a leaf.
 
 use crate::geometry::kd_tree::traverse::MAX_DEPTH;
 use crate::geometry::kd_tree::{KdTree, Node};
@@ -19,6 +24,9 @@ const EXACT_LIMIT: usize = 48;
 const N_BINS: usize = 32;
 /// Subtrees of more items are built in parallel.
 const PARALLEL_LIMIT: usize = 4096;
+/// Copies that a tree may have for each of its items, and beside those.
+const COPIES_AN_ITEM: usize = 16;
+const FREE_COPIES: usize = 1024;
 
 /// How cuts are chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +53,8 @@ pub fn build(items: Vec<Item>, split: Split, clip: &(impl Fn(u32, Aabb) -> Aabb 
     let log = usize::BITS - items.len().leading_zeros();
     let max_depth = (8 + (1.3 * log as f32) as usize).min(MAX_DEPTH);
     let builder = Builder { split, clip };
-    let root = builder.node(items, bounds, max_depth, 0);
+    let n_copies = COPIES_AN_ITEM * items.len() + FREE_COPIES;
+    let root = builder.node(items, bounds, Allowance { depth: max_depth, n_copies, n_bad: 0 });
     let mut tree = KdTree { bounds, nodes: Vec::new(), items: Vec::new() };
     flatten(&root, &mut tree);
     tree
@@ -61,6 +70,17 @@ struct Builder<'a, C> {
     clip: &'a C,
 }
 
+/// What is left for a subtree.
+#[derive(Clone, Copy)]
+struct Allowance {
+    /// Levels below its root.
+    depth: usize,
+    /// Items that may be in both halves of a cut.
+    n_copies: usize,
+    /// Bad cuts above it.
+    n_bad: u32,
+}
+
 #[derive(Clone, Copy)]
 struct Cut {
     axis: usize,
@@ -69,7 +89,8 @@ struct Cut {
 }
 
 impl<C: Fn(u32, Aabb) -> Aabb + Sync> Builder<'_, C> {
-    fn node(&self, items: Vec<Item>, cell: Aabb, depth_left: usize, n_bad: u32) -> BuildNode {
+    fn node(&self, items: Vec<Item>, cell: Aabb, allowed: Allowance) -> BuildNode {
+        let Allowance { depth, n_copies, n_bad } = allowed;
         let leaf_cost = COST_ITEM * items.len() as f32;
         let (cut, n_bad) = match self.split {
             Split::Midpoint => (midpoint(&items, &cell), 0),
@@ -81,16 +102,23 @@ impl<C: Fn(u32, Aabb) -> Aabb + Sync> Builder<'_, C> {
         };
         // A bad cut may be followed by good ones, so a few are allowed while there is much to gain.
         let is_hopeless = n_bad > 0 && items.len() <= 16 || n_bad >= 3;
-        let Some(cut) = cut.filter(|_| depth_left > 0 && !is_hopeless) else {
+        let is_affordable = |cut: &Cut| n_copies_of(&items, *cut) <= n_copies;
+        let cut = cut.filter(|cut| depth > 0 && !is_hopeless && is_affordable(cut));
+        let Some(cut) = cut else {
             return BuildNode::Leaf(items.iter().map(|item| item.id).collect());
         };
         let n_items = items.len();
+        let n_left = n_copies - n_copies_of(&items, cut);
         let (lower_items, upper_items) = self.distribute(items, &cell, cut);
         let (mut lower_cell, mut upper_cell) = (cell, cell);
         lower_cell.max[cut.axis] = cut.plane;
         upper_cell.min[cut.axis] = cut.plane;
-        let lower = || self.node(lower_items, lower_cell, depth_left - 1, n_bad);
-        let upper = || self.node(upper_items, upper_cell, depth_left - 1, n_bad);
+        let n_in_halves = (lower_items.len() + upper_items.len()).max(1);
+        let lower_copies =
+            (n_left as u128 * lower_items.len() as u128 / n_in_halves as u128) as usize;
+        let below = |n_copies| Allowance { depth: depth - 1, n_copies, n_bad };
+        let lower = || self.node(lower_items, lower_cell, below(lower_copies));
+        let upper = || self.node(upper_items, upper_cell, below(n_left - lower_copies));
         let (lower, upper) =
             if n_items > PARALLEL_LIMIT { rayon::join(lower, upper) } else { (lower(), upper()) };
         BuildNode::Inner { axis: cut.axis, plane: cut.plane, children: Box::new([lower, upper]) }
@@ -120,6 +148,14 @@ impl<C: Fn(u32, Aabb) -> Aabb + Sync> Builder<'_, C> {
         }
         (lower, upper)
     }
+}
+
+/// How many items a cut goes through.
+fn n_copies_of(items: &[Item], cut: Cut) -> usize {
+    let is_cut = |item: &&Item| {
+        item.bounds.min[cut.axis] < cut.plane && cut.plane < item.bounds.max[cut.axis]
+    };
+    items.iter().filter(is_cut).count()
 }
 
 /// The middle of the longest side; `None` where the cell is small enough or flat.

@@ -69,7 +69,7 @@ fn the_session_and_the_command_line_agree_to_the_bit() {
 /// Sixty edits at random moments, with pauses, restarts, picks and new goals.
 #[test]
 fn random_edits_end_in_the_picture_of_a_cold_render() {
-    for seed in 1..=6_u64 {
+    for seed in 1..=3_u64 {
         let mut random = Random(0x9e37_79b9_7f4a_7c15 ^ seed);
         let (session, wakes) = session(1 + seed as usize % 3);
         let mut job = job_of(BALL, 0, 24);
