@@ -224,7 +224,7 @@ fn the_seed_changes_the_noise_and_not_the_mean() {
     let picture = |seed| film(&job_of(&text(seed), AcceleratorKind::KdTree), 16).picture();
     let (a, b) = (picture(1), picture(2));
     assert_ne!(a, b, "another seed, other noise");
-    let mean = |p: &penumbra::render::Picture| {
+    let mean = |p: &penumbra::color::Picture| {
         p.pixels.iter().map(|p| f64::from(p[1])).sum::<f64>() / p.pixels.len() as f64
     };
     assert!((mean(&a) / mean(&b) - 1.0).abs() < 0.01, "{} and {}", mean(&a), mean(&b));
