@@ -62,7 +62,6 @@ fn the_noise_figure_is_near_the_true_error() {
             let figures = films.iter().map(|film| film.noise_percent().unwrap().powi(2));
             let figure = (figures.sum::<f64>() / f64::from(N_SEEDS)).sqrt();
             let ratio = figure / truth;
-            println!("{integrator} {sampler} {goal}: {figure} {truth} {ratio}");
             let what = format!("{figure} %, not {truth} %, at {goal} {sampler} samples");
             assert!((0.7..1.4).contains(&ratio), "{integrator}: {what}");
         }
