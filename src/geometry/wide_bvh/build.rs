@@ -137,7 +137,7 @@ fn append(tree: &mut Subtree, mut part: Subtree, root: u32) -> u32 {
 /// Two ranges from one of more than a block.
 fn split<'a>(range: Range<'a>, depth: u32) -> (Range<'a>, Range<'a>) {
     /// A deeper tree is cut in equal halves, which bounds its depth.
-    const SAH_DEPTH: u32 = 24;
+    const SAH_DEPTH: u32 = 12;
     let cut = if depth < SAH_DEPTH { best_cut(&range) } else { None };
     let middle = match cut {
         Some(cut) => partition(range.items, &cut),

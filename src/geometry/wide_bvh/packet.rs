@@ -11,7 +11,7 @@
 use crate::geometry::Nearest;
 use crate::geometry::lanes::{Isa, Lanes};
 use crate::geometry::triangle::Axes;
-use crate::geometry::wide_bvh::single::{self, Candidates, STACK, sheared};
+use crate::geometry::wide_bvh::single::{self, Candidates, Stack, sheared};
 use crate::geometry::wide_bvh::{BLOCK, Block, BoxRay, LEAF, Node, WIDTH, WideBvh};
 use crate::math::RayBatch;
 
@@ -309,40 +309,16 @@ impl<I: Isa> Packet<I> {
     #[inline(always)]
     fn walk<V: Visit<I>>(&mut self, bvh: &WideBvh, visitor: &mut V) {
         let mut farthest = self.limit.greatest();
-        let mut stack = [(0_u32, 0.0_f32); STACK];
-        let mut n_stacked = 0;
+        let mut stack = Stack::new();
         let mut current = bvh.root;
         loop {
             while current & LEAF == 0 {
                 let node: &Node = &bvh.nodes[current as usize];
-                let (mut hits, ts) = self.test_node(node, farthest);
+                let (hits, ts) = self.test_node(node, farthest);
                 if hits == 0 {
                     break;
                 }
-                let first = hits.trailing_zeros() as usize;
-                hits &= hits - 1;
-                current = node.children[first];
-                if hits == 0 {
-                    continue;
-                }
-                let mut nearest_t = ts[first];
-                let base = n_stacked;
-                while hits != 0 {
-                    let child = hits.trailing_zeros() as usize;
-                    hits &= hits - 1;
-                    let mut entry = (node.children[child], ts[child]);
-                    if entry.1 < nearest_t {
-                        std::mem::swap(&mut entry.1, &mut nearest_t);
-                        std::mem::swap(&mut entry.0, &mut current);
-                    }
-                    let mut place = n_stacked;
-                    while place > base && stack[place - 1].1 < entry.1 {
-                        stack[place] = stack[place - 1];
-                        place -= 1;
-                    }
-                    stack[place] = entry;
-                    n_stacked += 1;
-                }
+                current = stack.descend(node, hits, &ts);
             }
             if current & LEAF != 0 && visitor.visit(self, &bvh.blocks[(current & !LEAF) as usize]) {
                 farthest = self.limit.greatest();
@@ -350,16 +326,9 @@ impl<I: Isa> Packet<I> {
                     return;
                 }
             }
-            loop {
-                if n_stacked == 0 {
-                    return;
-                }
-                n_stacked -= 1;
-                let (reference, t) = stack[n_stacked];
-                if t <= farthest {
-                    current = reference;
-                    break;
-                }
+            match stack.pop(farthest) {
+                Some(reference) => current = reference,
+                None => return,
             }
         }
     }

@@ -6,8 +6,9 @@ use crate::geometry::triangle::{Axes, CERTAIN, exact};
 use crate::geometry::wide_bvh::{Block, BoxRay, LEAF, Node, WIDTH, WideBvh};
 use crate::math::Ray;
 
-/// Seven children a level may wait, and the builder keeps the tree below 36 levels.
-pub(super) const STACK: usize = 256;
+/// Seven children a level may wait, and the builder keeps the tree below 22 levels: 12 by cost, then
+/// ten that divide what is left by eight.
+const STACK: usize = 160;
 
 /// What is done with the blocks that a ray may touch. A trait rather than a closure: its method is
 /// inlined for certain, into code compiled for the registers that it uses.
@@ -109,8 +110,7 @@ fn walk<I: Isa, V: Visit<I>>(bvh: &WideBvh, ray: &Ray, mut limit: f32, visitor: 
         far_origin[axis] = I::F8::splat((ray.origin[axis] - outwards) * reciprocal[axis]);
         scales[axis] = I::F8::splat(reciprocal[axis]);
     }
-    let mut stack = [(0_u32, 0.0_f32); STACK];
-    let mut n_stacked = 0;
+    let mut stack = Stack::new();
     let mut current = bvh.root;
     loop {
         while current & LEAF == 0 {
@@ -122,52 +122,74 @@ fn walk<I: Isa, V: Visit<I>>(bvh: &WideBvh, ray: &Ray, mut limit: f32, visitor: 
                 enter = enter.max(near.mul_sub(scales[axis], near_origin[axis]));
                 leave = leave.min(far.mul_sub(scales[axis], far_origin[axis]));
             }
-            let mut hits = enter.le(leave) & ((1 << node.n_children) - 1);
+            let hits = enter.le(leave) & ((1 << node.n_children) - 1);
             if hits == 0 {
                 break;
             }
-            let first = hits.trailing_zeros() as usize;
-            hits &= hits - 1;
-            current = node.children[first];
-            if hits == 0 {
-                continue;
-            }
             let mut ts = [0.0; WIDTH];
             enter.store(&mut ts);
-            let mut nearest_t = ts[first];
-            let base = n_stacked;
-            while hits != 0 {
-                let child = hits.trailing_zeros() as usize;
-                hits &= hits - 1;
-                let mut entry = (node.children[child], ts[child]);
-                if entry.1 < nearest_t {
-                    std::mem::swap(&mut entry.1, &mut nearest_t);
-                    std::mem::swap(&mut entry.0, &mut current);
-                }
-                // Sorted, the nearest on top.
-                let mut place = n_stacked;
-                while place > base && stack[place - 1].1 < entry.1 {
-                    stack[place] = stack[place - 1];
-                    place -= 1;
-                }
-                stack[place] = entry;
-                n_stacked += 1;
-            }
+            current = stack.descend(node, hits, &ts);
         }
         if current & LEAF != 0 {
             limit = visitor.visit(&bvh.blocks[(current & !LEAF) as usize], limit);
         }
-        loop {
-            if n_stacked == 0 {
-                return;
+        match stack.pop(limit) {
+            Some(reference) => current = reference,
+            None => return,
+        }
+    }
+}
+
+/// References that wait for their turn, each with the parameter at which it is entered.
+pub(super) struct Stack {
+    entries: [(u32, f32); STACK],
+    n: usize,
+}
+
+impl Stack {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        Self { entries: [(0, 0.0); STACK], n: 0 }
+    }
+
+    /// The nearest of the children that are hit (at least one); the others wait, sorted, the
+    /// nearest on top.
+    #[inline(always)]
+    pub(super) fn descend(&mut self, node: &Node, mut hits: u32, ts: &[f32; WIDTH]) -> u32 {
+        let first = hits.trailing_zeros() as usize;
+        hits &= hits - 1;
+        let (mut nearest, mut nearest_t) = (node.children[first], ts[first]);
+        let base = self.n;
+        while hits != 0 {
+            let child = hits.trailing_zeros() as usize;
+            hits &= hits - 1;
+            let mut entry = (node.children[child], ts[child]);
+            if entry.1 < nearest_t {
+                std::mem::swap(&mut entry.0, &mut nearest);
+                std::mem::swap(&mut entry.1, &mut nearest_t);
             }
-            n_stacked -= 1;
-            let (reference, t) = stack[n_stacked];
+            let mut place = self.n;
+            while place > base && self.entries[place - 1].1 < entry.1 {
+                self.entries[place] = self.entries[place - 1];
+                place -= 1;
+            }
+            self.entries[place] = entry;
+            self.n += 1;
+        }
+        nearest
+    }
+
+    /// The next one that is entered before the limit.
+    #[inline(always)]
+    pub(super) fn pop(&mut self, limit: f32) -> Option<u32> {
+        while self.n > 0 {
+            self.n -= 1;
+            let (reference, t) = self.entries[self.n];
             if t <= limit {
-                current = reference;
-                break;
+                return Some(reference);
             }
         }
+        None
     }
 }
 
