@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use penumbra::geometry::AcceleratorKind;
 use penumbra::render::{Film, RenderJob, World, render_pass};
 use penumbra::threads;
@@ -64,9 +64,17 @@ fn everything(scale: f64, integrator: &str, sampler: &str) -> String {
     )
 }
 
+/// Where a mesh is that lies far from its own origin.
+const FAR: Vec3 = Vec3::new(3000.0, -2000.0, 1000.0);
+
 fn job_of(text: &str, accelerator: AcceleratorKind) -> RenderJob {
-    let files =
-        Files { meshes: vec![("ball", || icosphere(2, 1.0, Vec3::ZERO))], ..Files::default() };
+    let files = Files {
+        meshes: vec![
+            ("ball", || icosphere(2, 1.0, Vec3::ZERO)),
+            ("far", || icosphere(2, 1.0, FAR)),
+        ],
+        ..Files::default()
+    };
     job_with(text, files, accelerator)
 }
 
@@ -123,6 +131,7 @@ fn a_scene_in_other_units_has_the_same_picture() {
 fn nothing_shadows_itself() {
     let shapes = [
         "type = 'mesh'\nfile = 'ball'\nnormals = 'flat'",
+        "type = 'mesh'\nfile = 'far'\nnormals = 'flat'",
         "type = 'sphere'\ncenter = [0, 0, 0]\nradius = 1",
         "type = 'box'\nmin = [-0.9, -0.7, -0.8]\nmax = [0.8, 0.7, 0.9]\nrotate = [10, 20, 30]",
         "type = 'cone'\nbase = [-0.4, -0.7, 0]\ntip = [0.3, 1, 0.2]\nradius = 0.9",
@@ -138,6 +147,8 @@ fn nothing_shadows_itself() {
                 if scale < 1.0 && shift > 0.0 {
                     continue;
                 }
+                let is_far = shape.contains("far");
+                let home = if is_far { -FAR.as_dvec3() } else { DVec3::ZERO };
                 // Two of them: lit in full means half of it by each.
                 let mut suns = String::new();
                 for (x, y, z) in [(1.0, 0.02, 0.1), (-0.3, 0.005, 1.0)] {
@@ -154,7 +165,7 @@ fn nothing_shadows_itself() {
                          material = 'm'\nscale = {scale}\ntranslate = {}\n{lights}",
                         at(1.5, 1.0, 4.0),
                         at(0.0, 0.0, 0.0),
-                        at(0.0, 0.0, 0.0),
+                        at(home.x, home.y, home.z),
                     )
                 };
                 // The same suns without shadows: small, far, and so weak that they only show where
