@@ -1,5 +1,8 @@
 //! Radiance against closed forms and quadrature.
 
+mod furnace;
+mod glass;
 mod gloss;
 mod lens;
 mod lights;
+mod surfaces;

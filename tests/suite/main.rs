@@ -13,6 +13,8 @@ mod floors;
 #[cfg(test)]
 mod hostile;
 #[cfg(test)]
+mod noise;
+#[cfg(test)]
 mod oracle;
 #[cfg(test)]
 mod session;

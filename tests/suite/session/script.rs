@@ -51,17 +51,17 @@ impl Call {
 
     /// Fails.
     pub(super) fn panic(self) {
-        drop(self.answer.send(Answer::Panic));
+        let _ = self.answer.send(Answer::Panic);
     }
 
     /// Goes on until it is told to stop, which it obeys.
     pub(super) fn until_stopped(self) {
-        drop(self.answer.send(Answer::UntilStopped));
+        let _ = self.answer.send(Answer::UntilStopped);
     }
 
     /// Whether it has been told to stop. It goes on waiting.
     pub(super) fn is_stopped(&self) -> bool {
-        drop(self.answer.send(Answer::TellWhetherStopped));
+        let _ = self.answer.send(Answer::TellWhetherStopped);
         self.replies.recv().unwrap()
     }
 }
@@ -92,7 +92,7 @@ impl Script {
                     return Err(Stopped);
                 }
                 Answer::TellWhetherStopped => {
-                    drop(reply.send(stop.load(Ordering::Relaxed)));
+                    let _ = reply.send(stop.load(Ordering::Relaxed));
                 }
             }
         }
