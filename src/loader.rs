@@ -88,6 +88,18 @@ pub enum LoadError {
         /// What is wrong.
         error: ObjError,
     },
+    /// A mesh in a scene's place is too far out for a scene around it.
+    #[error(
+        "{name}: reaches {reach:e} from the origin, too far to be framed (at most {:e}); make it \
+         smaller by `scale` in a scene",
+        framing::FARTHEST
+    )]
+    Unframed {
+        /// The file.
+        name: String,
+        /// Its largest coordinate.
+        reach: f32,
+    },
     /// A PNG is no snapshot.
     #[error("{name}: {error}")]
     Snapshot {
@@ -244,6 +256,10 @@ impl Opened {
             .mesh_of(&key, bytes)
             .map_err(|error| LoadError::Mesh { name: name.clone(), error })?;
         reading.records.insert(0, FileRecord::of(&file, bytes));
+        let reach = asset.traced.bounds.max_abs();
+        if framing::FARTHEST < reach {
+            return Err(LoadError::Unframed { name, reach });
+        }
         description = framing::scene_around(&file, Some(asset.traced.bounds));
         let mut opened = Self::scene(name, scene_file::write(&description), folder.clone());
         opened.mesh = Some((key, Arc::new(asset)));

@@ -8,6 +8,12 @@ use crate::scene::description::{
     NormalsKind, ObjectDescription, ObjectKind, OneOrTwo, SceneDescription,
 };
 
+/// A mesh with coordinates beyond this has no place for a camera and a light around it.
+pub(super) const FARTHEST: f32 = 1e11;
+
+/// A mesh smaller than this is seen from as far as one of this size.
+const SMALLEST_SIZE: f64 = 1e-6;
+
 /// Stands the mesh on a ground plane, frames it from the front and above, lights it by one large
 /// soft light from the upper left. Without bounds it is a unit cube that is framed.
 pub(super) fn scene_around(file: &str, bounds: Option<Aabb>) -> SceneDescription {
@@ -16,8 +22,8 @@ pub(super) fn scene_around(file: &str, bounds: Option<Aabb>) -> SceneDescription
     let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
     let center = 0.5 * (min + max);
     let diagonal = (max - min).length();
-    // A mesh of one point still needs a size to be seen at.
-    let size = if diagonal > 0.0 { diagonal } else { center.abs().max_element().max(1.0) * 1e-3 };
+    // A mesh of one point, or one too small for where it is, still needs a size to be seen at.
+    let size = diagonal.max(1e-6 * center.abs().max_element()).max(SMALLEST_SIZE);
     let eye = center + 1.5 * size * DVec3::new(0.45, 0.32, 1.0).normalize();
     let lamp = center + 2.2 * size * DVec3::new(-0.55, 1.0, 0.65).normalize();
     // About 4 units of irradiance at the mesh: radiance 0.64 from a grey that reflects half.

@@ -204,7 +204,7 @@ fn odd_meshes_render_the_same_by_every_accelerator() {
         ("denormals", "v 1e-40 0 0\nv 1e-45 1e-40 0\nv 0 0 1e-42\nf 1 2 3\n".to_owned()),
         (
             "the largest and the smallest",
-            "v 1e12 0 0\nv 1e-30 1e12 0\nv -1e12 0 1e12\nf 1 2 3\n".to_owned(),
+            "v 1e11 0 0\nv 1e-30 1e11 0\nv -1e11 0 1e11\nf 1 2 3\n".to_owned(),
         ),
         ("a needle", "v 0 0 0\nv 1e6 1e-6 0\nv 1e6 0 1e-6\nf 1 2 3\n".to_owned()),
         (
@@ -221,6 +221,9 @@ fn odd_meshes_render_the_same_by_every_accelerator() {
         let loaded = opened(&place, "m.obj", text.as_bytes(), what);
         assert!(loaded.is_ok(), "{what}: {:?}", loaded.err());
     }
+    let vast = "v 1e12 0 0\nv 0 1e12 0\nv 0 0 1e12\nf 1 2 3\n";
+    let error = opened(&place, "m.obj", vast.as_bytes(), "too vast").expect_err("too vast");
+    assert!(error.contains("1e12") && error.contains("1e11"), "{error}");
     let star = circle(|i| if i % 2 == 0 { 1.0 } else { 0.5 });
     if let Err(error) = opened(&place, "m.obj", star.as_bytes(), "a star of 10,000 corners") {
         assert!(error.contains("line 10001"), "{error}");
