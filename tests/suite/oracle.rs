@@ -1,4 +1,5 @@
 //! Rays against brute force, and what must not depend on how rays are traced.
 
+mod closed;
 mod invariance;
 mod rays;

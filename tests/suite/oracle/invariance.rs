@@ -101,6 +101,8 @@ fn threads_accelerators_and_passes_change_no_byte() {
             (AcceleratorKind::KdTree, &[1, 1, 2, 4][..], 2),
             (AcceleratorKind::KdTree, &[5, 3], 5),
             (AcceleratorKind::KdMidpoint, &[8], 2),
+            (AcceleratorKind::WideBvh, &[8], 2),
+            (AcceleratorKind::WideBvh, &[1, 7], 1),
             (AcceleratorKind::BruteForce, &[3, 5], 2),
         ] {
             let found = bytes(&job_of(&text, accelerator), passes, n_threads);
