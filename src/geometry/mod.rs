@@ -269,8 +269,13 @@ impl Geometry {
         }
     }
 
-    /// What rays are held against before an object; the oracle does without.
+    /// What rays are held against before an object. The oracle does without, and so do one or two
+    /// objects, whose own trees begin with a box anyway.
     fn box_of(&self, instance: &Instance) -> Option<Aabb> {
+        const FEW: usize = 2;
+        if self.listed.len() <= FEW {
+            return None;
+        }
         match self.kind {
             AcceleratorKind::WideBvh | AcceleratorKind::KdTree | AcceleratorKind::KdMidpoint => {
                 instance.reach()
