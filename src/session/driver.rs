@@ -276,9 +276,11 @@ impl<R: Renderer> Driver<'_, R> {
     fn measure(&mut self, film: &Film, n_samples: u32, pass: PassStatistics, seconds: f64) {
         let seconds = seconds.max(1e-6);
         let n = f64::from(film.width()) * f64::from(film.height()) * f64::from(n_samples);
-        // A few pixels say little.
+        // A few pixels say little, and one slow preview is no reason for a coarser next one: the
+        // rate rises at once and falls by halves.
         if n >= 256.0 {
-            self.rate = n / seconds;
+            let measured = n / seconds;
+            self.rate = measured.max(0.5 * (self.rate + measured));
         }
         self.rays_per_second = pass.n_rays as f64 / seconds;
     }
