@@ -30,7 +30,7 @@ use penumbra::tone_mapping::map_to_srgb8;
 
 const WIDTH: u32 = 1280;
 const HEIGHT: u32 = 720;
-const N_EDITS: u32 = 24;
+const N_EDITS: u32 = 12;
 
 type Edit = fn(&mut SceneDescription, f64);
 
