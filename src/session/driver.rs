@@ -19,8 +19,6 @@ const PASS_SECS: f64 = 0.25;
 const PUBLISH_INTERVAL: Duration = Duration::from_millis(33);
 /// Samples a second before anything has been measured.
 const FIRST_GUESS_RATE: f64 = 4e5;
-/// With fewer samples the estimate of the noise is not to be trusted.
-const LEAST_FOR_NOISE: u32 = 8;
 
 /// A job at work.
 struct Work<W> {
@@ -311,12 +309,7 @@ impl<R: Renderer> Driver<'_, R> {
 }
 
 fn is_reached<W>(goal: &Goal, work: &Work<W>) -> bool {
-    let n_samples = work.film.n_samples();
-    let is_clean = n_samples >= LEAST_FOR_NOISE
-        && goal.noise_percent.zip(work.film.noise_percent()).is_some_and(|(goal, now)| now <= goal);
-    n_samples >= goal.samples
-        || is_clean
-        || (n_samples > 0 && goal.seconds.is_some_and(|seconds| work.seconds >= seconds))
+    goal.is_reached(&work.film, work.seconds)
 }
 
 /// To the nearest of the goals, at the speed so far; noise falls with the square root of samples.
