@@ -5,6 +5,7 @@
 mod aabb;
 pub mod approx;
 mod batch;
+pub mod distribution;
 mod frame;
 pub mod noise;
 pub mod portable;

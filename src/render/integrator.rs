@@ -2,10 +2,12 @@
 //!
 //! All rays of a wave are intersected by one call, all their shadow rays by another, and what goes
 //! on is the next wave. A path has one continuing ray, chosen among mirror, glass and (in "path")
-//! scattering by how much each reflects. Lights in `[[lights]]` are sampled at every surface;
-//! glossy lobes are sampled as well and both are weighted by the power heuristic (E. Veach, "Robust
-//! Monte Carlo Methods for Light Transport Simulation", 1997, section 9.2). Rays of the second kind
-//! are shadow rays too, so that lights never hide one another.
+//! scattering by how much each reflects. Shadow rays find the light of `[[lights]]` and, in "path",
+//! of what glows and of the sky; scattered rays find the latter too, and both are weighted by the
+//! power heuristic.
+
+mod direct_light;
+mod shadows;
 
 use std::ops::Range;
 
@@ -22,7 +24,9 @@ use crate::render::plan::Tile;
 use crate::render::shading::Shading;
 use crate::render::world::World;
 use crate::scene::description::IntegratorKind;
-use crate::scene::light::LightSample;
+
+use direct_light::LightChoice;
+use shadows::Shadows;
 
 /// Dimensions of a sample's numbers. Each scattering event has a block of its own.
 mod dimension {
@@ -31,6 +35,9 @@ mod dimension {
     pub(super) const CHOICE: u32 = 2;
     pub(super) const SCATTER: u32 = 3;
     pub(super) const PROBE: u32 = 4;
+    pub(super) const LIGHT_CHOICE: u32 = 5;
+    pub(super) const EMITTER_CHOICE: u32 = 6;
+    pub(super) const EMITTER: u32 = 7;
     pub(super) const FIRST_LIGHT: u32 = 16;
 
     pub(super) fn of(depth: u32, purpose: u32) -> u32 {
@@ -52,9 +59,21 @@ struct Path {
     numbers: SampleNumbers,
     /// Scattering events so far.
     depth: u32,
-    /// Whether visible lights count where its ray meets them: not after scattering, whose direct
-    /// light has been counted already.
-    sees_lights: bool,
+    /// Where the ray was scattered, and not mirrored or refracted: light that was looked for there
+    /// counts by its share only, and visible lights have been counted in full.
+    scattered: Option<Scattered>,
+}
+
+/// The last surface of a path, as far as it decides with which chance other ways find the light that
+/// its scattered ray meets.
+#[derive(Clone, Copy)]
+struct Scattered {
+    from: Vec3,
+    normal: Vec3,
+    /// Density of the ray per solid angle, with the chance that the path scattered at all.
+    pdf: f32,
+    /// Sum of the weights of all emitters as seen from there.
+    total: f32,
 }
 
 /// The samples of one pixel in a block.
@@ -75,16 +94,8 @@ pub(super) struct TileRenderer<'a> {
     next_rays: RayBatch,
     next_paths: Vec<Path>,
     shadows: Shadows,
-}
-
-/// Shadow rays of a wave, each with what it brings if nothing is in its way.
-#[derive(Default)]
-struct Shadows {
-    rays: RayBatch,
-    slots: Vec<u32>,
-    contributions: Vec<Rgb>,
-    blocked: Vec<bool>,
-    shares: Vec<Rgb>,
+    lights: LightChoice,
+    emitter_weights: Vec<f32>,
 }
 
 impl<'a> TileRenderer<'a> {
@@ -99,6 +110,8 @@ impl<'a> TileRenderer<'a> {
             next_rays: RayBatch::default(),
             next_paths: Vec::new(),
             shadows: Shadows::default(),
+            lights: LightChoice::default(),
+            emitter_weights: Vec::new(),
         }
     }
 
@@ -168,7 +181,7 @@ impl<'a> TileRenderer<'a> {
                     throughput: Rgb::ONE,
                     numbers,
                     depth: 0,
-                    sees_lights: true,
+                    scattered: None,
                 });
             }
             self.runs.push(Run { pixel, slots: first_slot..self.paths.len() });
@@ -179,23 +192,35 @@ impl<'a> TileRenderer<'a> {
 
     /// What a path's ray meets: adds its light, leaves shadow rays, and goes on.
     fn advance(&mut self, path: Path, ray: Ray, hit: Option<Hit>) {
-        let scene = &*self.world.job.scene;
+        let world = self.world;
         let t_surface = hit.map_or(f32::INFINITY, |hit| hit.t);
         if let Some(radiance) = self.visible_light(&ray, t_surface) {
-            if path.sees_lights {
+            if path.scattered.is_none() {
                 self.add(path, radiance);
             }
             return;
         }
+        let direction = ray.direction.normalize();
         let Some(hit) = hit else {
-            self.add(path, scene.background_radiance(ray.direction.normalize()));
+            let share = path
+                .scattered
+                .map_or(1.0, |last| power(last.pdf, world.emission.sky_pdf(last.total, direction)));
+            self.add(path, world.job.scene.background_radiance(direction) * share);
             return;
         };
-        let shading = Shading::new(self.world, &ray, hit);
-        self.add(path, shading.material.emission);
-        let settings = self.world.job.settings;
+        let shading = Shading::new(world, &ray, hit);
+        let emission = shading.material.emission;
+        if emission != Rgb::ZERO {
+            let share = path.scattered.map_or(1.0, |last| {
+                let from = (last.from, last.normal, last.total);
+                let met = (hit, &shading.surface, emission);
+                power(last.pdf, world.emission.pdf(from, direction, met))
+            });
+            self.add(path, emission * share);
+        }
+        let settings = &world.job.settings;
         if settings.integrator == IntegratorKind::Direct {
-            self.add(path, shading.glossy.diffuse * scene.ambient);
+            self.add(path, shading.glossy.diffuse * world.job.scene.ambient);
         }
         if !shading.glossy.is_black() {
             self.sample_lights(path, &shading);
@@ -222,62 +247,6 @@ impl<'a> TileRenderer<'a> {
         nearest.map(|(_, radiance)| radiance)
     }
 
-    /// Direct light of `[[lights]]`: a point of every light, and a direction of the glossy lobe.
-    fn sample_lights(&mut self, path: Path, shading: &Shading<'_>) {
-        let scene = &*self.world.job.scene;
-        let wo = shading.frame.local_from_world(shading.wo);
-        let glossy = &shading.glossy;
-        let is_glossy = glossy.specular != Rgb::ZERO && wo.z > 0.0;
-        for (index, light) in scene.lights.iter().enumerate() {
-            let purpose = dimension::FIRST_LIGHT + index as u32;
-            let u = path.numbers.pair(dimension::of(path.depth, purpose));
-            let Some(sample) = light.sample(shading.surface.point, u) else { continue };
-            if !shading.is_above(sample.direction) {
-                continue;
-            }
-            let wi = shading.frame.local_from_world(sample.direction);
-            let mut value = glossy.diffuse / std::f32::consts::PI;
-            if is_glossy {
-                let weight = sample.pdf.map_or(1.0, |pdf| power(pdf, glossy.lobe.pdf(wo, wi)));
-                value += glossy.specular * (glossy.lobe.eval(wo, wi) * weight);
-            }
-            let contribution = path.throughput * value * sample.weight * wi.z;
-            self.shadows.push(path.slot, shading, &sample, contribution);
-        }
-        if is_glossy {
-            self.probe_lights(path, shading, wo);
-        }
-    }
-
-    /// The glossy lobe's own direction, for the lights that it happens to meet.
-    fn probe_lights(&mut self, path: Path, shading: &Shading<'_>, wo: Vec3) {
-        let scene = &*self.world.job.scene;
-        let lobe = &shading.glossy.lobe;
-        let u = path.numbers.pair(dimension::of(path.depth, dimension::PROBE));
-        let Some(wi) = lobe.sample(wo, u) else { return };
-        let direction = shading.frame.world_from_local(wi);
-        let pdf = lobe.pdf(wo, wi);
-        if !(shading.is_above(direction) && pdf > 0.0) {
-            return;
-        }
-        let from = shading.surface.point;
-        let ray = Ray::new(from, direction);
-        for light in &scene.lights {
-            let Some((t, radiance)) = light.intersect(&ray) else { continue };
-            let weight = power(pdf, light.pdf(from, direction, t));
-            let value = shading.glossy.specular * (lobe.eval(wo, wi) * wi.z * weight / pdf);
-            let sample = LightSample {
-                direction,
-                reach: if t.is_finite() { direction * t } else { direction },
-                t_max: if t.is_finite() { 1.0 } else { f32::INFINITY },
-                normal: light.normal_at(from + direction * t),
-                weight: radiance,
-                pdf: Some(pdf),
-            };
-            self.shadows.push(path.slot, shading, &sample, path.throughput * value * radiance);
-        }
-    }
-
     /// Chooses one way to go on, in proportion to what each reflects.
     fn go_on(&mut self, path: Path, shading: &Shading<'_>) {
         let material = shading.material;
@@ -292,18 +261,25 @@ impl<'a> TileRenderer<'a> {
         if total <= 0.0 {
             return;
         }
+        let scattering = weights[2] / total;
+        let emitters =
+            if scattering > 0.0 { self.sample_emitters(path, shading, scattering) } else { 0.0 };
         let [choice, roulette] = path.numbers.pair(dimension::of(path.depth, dimension::CHOICE));
         let choice = choice * total;
         let step = if choice < weights[0] {
-            self.mirror(shading, shading.wo).map(|wi| (wi, material.reflection, true, weights[0]))
+            self.mirror(shading, shading.wo).map(|wi| (wi, material.reflection, None, weights[0]))
         } else if choice < weights[0] + weights[1] || weights[2] == 0.0 {
             let within = ((choice - weights[0]) / weights[1]).clamp(0.0, 1.0);
             self.through_glass(shading, within)
-                .map(|wi| (wi, material.transmission, true, weights[1]))
+                .map(|wi| (wi, material.transmission, None, weights[1]))
         } else {
-            self.scatter(path, shading).map(|(wi, value)| (wi, value, false, weights[2]))
+            self.scatter(path, shading).map(|(wi, value, pdf)| {
+                let (from, normal) = (shading.surface.point, shading.frame.z);
+                let last = Scattered { from, normal, pdf: scattering * pdf, total: emitters };
+                (wi, value, Some(last), weights[2])
+            })
         };
-        let Some((direction, value, is_specular, weight)) = step else { return };
+        let Some((direction, value, scattered, weight)) = step else { return };
         let mut throughput = path.throughput * value * (total / weight);
         let depth = path.depth + 1;
         if depth >= ROULETTE_DEPTH {
@@ -319,7 +295,7 @@ impl<'a> TileRenderer<'a> {
         let mut ray = Ray::new(shading.surface.leave(direction), direction);
         ray.source = shading.surface.source;
         self.next_rays.push(ray);
-        self.next_paths.push(Path { throughput, depth, sees_lights: is_specular, ..path });
+        self.next_paths.push(Path { throughput, depth, scattered, ..path });
     }
 
     /// The mirrored direction, if it is above the geometric surface.
@@ -340,19 +316,22 @@ impl<'a> TileRenderer<'a> {
         (shading.normal.dot(wi) < 0.0).then_some(wi)
     }
 
-    /// A scattered direction, and the BRDF times the cosine over its density.
-    fn scatter(&self, path: Path, shading: &Shading<'_>) -> Option<(Vec3, Rgb)> {
+    /// A scattered direction, the BRDF times the cosine over its density, and that density.
+    fn scatter(&self, path: Path, shading: &Shading<'_>) -> Option<(Vec3, Rgb, f32)> {
         let wo = shading.frame.local_from_world(shading.wo);
         let u = path.numbers.pair(dimension::of(path.depth, dimension::SCATTER));
         let wi = shading.glossy.sample(wo, u)?;
         let direction = shading.frame.world_from_local(wi).normalize();
         let pdf = shading.glossy.pdf(wo, wi);
         let is_valid = shading.normal.dot(direction) > 0.0 && pdf > 0.0;
-        is_valid.then(|| (direction, shading.glossy.eval(wo, wi) * (wi.z / pdf)))
+        is_valid.then(|| (direction, shading.glossy.eval(wo, wi) * (wi.z / pdf), pdf))
     }
 }
 
-/// Veach's power heuristic with exponent 2.
+/// The share of a way of density `this` in what one of density `other` finds as well: the power
+/// heuristic with exponent 2.
+///
+/// Source: E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, section 9.2.
 fn power(this: f32, other: f32) -> f32 {
     if this == f32::INFINITY {
         return 1.0;
@@ -360,55 +339,4 @@ fn power(this: f32, other: f32) -> f32 {
     let (this, other) = (f64::from(this).powi(2), f64::from(other).powi(2));
     let weight = this / (this + other);
     if weight.is_finite() { weight as f32 } else { 0.0 }
-}
-
-impl Shadows {
-    fn clear(&mut self) {
-        self.rays.clear();
-        self.slots.clear();
-        self.contributions.clear();
-    }
-
-    /// Both ends are kept clear of the surfaces they are on by the bound of rounding errors.
-    fn push(&mut self, slot: u32, shading: &Shading<'_>, sample: &LightSample, light: Rgb) {
-        if light == Rgb::ZERO {
-            return;
-        }
-        let origin = shading.surface.leave(sample.direction);
-        let (direction, t_max) = if sample.t_max == f32::INFINITY {
-            (sample.reach, f32::INFINITY)
-        } else {
-            let from = shading.surface.point;
-            let target = from + sample.reach;
-            let magnitude = from.abs().max_element().max(target.abs().max_element());
-            let error = magnitude * (16.0 / 16_777_216.0);
-            let reach = target + sample.normal.unwrap_or(Vec3::ZERO) * error - origin;
-            (reach, 1.0 - (error / reach.length()).min(0.5))
-        };
-        self.rays.push(Ray { origin, direction, t_max, source: shading.surface.source });
-        self.slots.push(slot);
-        self.contributions.push(light);
-    }
-
-    /// Adds what arrives, in the order of the rays.
-    fn resolve(&mut self, world: &World, radiance: &mut [Rgb]) {
-        let tints = world.has_glass && world.job.settings.integrator == IntegratorKind::Direct;
-        if tints {
-            let clear = |hit: Hit| {
-                let material = world.material_at(hit);
-                material.is_glass().then_some(material.transmission)
-            };
-            let is_clear = |object: u32| world.is_clear[object as usize];
-            world.geometry.transmittance(&self.rays, clear, is_clear, &mut self.shares);
-        } else {
-            world.geometry.occluded(&self.rays, &mut self.blocked);
-            let share = |blocked: &bool| if *blocked { Rgb::ZERO } else { Rgb::ONE };
-            self.shares.clear();
-            self.shares.extend(self.blocked.iter().map(share));
-        }
-        let arriving = self.contributions.iter().zip(&self.shares);
-        for (slot, (contribution, share)) in self.slots.iter().zip(arriving) {
-            radiance[*slot as usize] += *contribution * *share;
-        }
-    }
 }

@@ -5,6 +5,7 @@
 //! accelerator and the grouping of passes.
 
 mod adaptive;
+mod emission;
 pub mod film;
 mod integrator;
 pub mod job;

@@ -2,7 +2,9 @@
 
 use crate::geometry::{Geometry, Hit, Shape};
 use crate::math::Ray;
+use crate::render::emission::Emission;
 use crate::render::job::RenderJob;
+use crate::scene::description::IntegratorKind;
 use crate::scene::{Material, Object};
 
 /// A job and its geometry.
@@ -15,6 +17,8 @@ pub struct World {
     /// For each object, whether any of its materials is glass.
     pub(super) is_clear: Vec<bool>,
     pub(super) has_glass: bool,
+    /// What lights others in "path" beside `[[lights]]`; empty in "direct".
+    pub(super) emission: Emission,
 }
 
 /// What a ray through the middle of a pixel meets.
@@ -38,7 +42,11 @@ impl World {
         };
         let is_clear: Vec<bool> = job.scene.objects.iter().map(is_glass).collect();
         let has_glass = is_clear.contains(&true);
-        Self { job, geometry, is_clear, has_glass }
+        let emission = match job.settings.integrator {
+            IntegratorKind::Direct => Emission::default(),
+            IntegratorKind::Path => Emission::new(&job.scene),
+        };
+        Self { job, geometry, is_clear, has_glass, emission }
     }
 
     /// The material at a hit.

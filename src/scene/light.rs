@@ -9,7 +9,7 @@ use std::f32::consts::{PI, TAU};
 
 use glam::{DVec3, Vec3};
 
-use crate::color::Rgb;
+use crate::color::{Rgb, luminance};
 use crate::math::spherical_ellipse::SphericalEllipse;
 use crate::math::spherical_rectangle::SphericalRectangle;
 use crate::math::{Frame, Ray, portable, warp};
@@ -110,6 +110,17 @@ pub struct LightSample {
     pub pdf: Option<f32>,
 }
 
+/// What a light may bring to a point, roughly: to choose among lights by.
+#[derive(Clone, Copy, Debug)]
+pub struct LightEstimate {
+    /// Unit direction towards its middle.
+    pub direction: Vec3,
+    /// Sine of the angle between its middle and its rim, 0..=1, at most too large.
+    pub half_width: f32,
+    /// Luminance of the irradiance of a surface that faces it, above 0.
+    pub irradiance: f32,
+}
+
 impl Light {
     /// Samples the light from `from` with two numbers in [0, 1). `None` where nothing arrives.
     pub fn sample(&self, from: Vec3, u: [f32; 2]) -> Option<LightSample> {
@@ -124,7 +135,7 @@ impl Light {
                 let p = whole.sample(u.map(f64::from));
                 let reach = in_world(&frame, DVec3::new(p.x, p.y, -p.z)).as_vec3();
                 let pdf = (1.0 / whole.solid_angle) as f32;
-                Some(LightSample::at(reach, Some(frame.z), radiance, pdf))
+                Some(LightSample::of_place(reach, Some(frame.z), radiance, pdf))
             }
             Emitter::Disk { center, frame, radius, radiance } => {
                 let p = warp::square_to_disk(u);
@@ -140,7 +151,7 @@ impl Light {
                 }
                 let reach = in_world(&frame, direction * (seen.z / -direction.z)).as_vec3();
                 let pdf = cone.pdf(direction) as f32;
-                Some(LightSample::at(reach, Some(frame.z), radiance, pdf))
+                Some(LightSample::of_place(reach, Some(frame.z), radiance, pdf))
             }
             Emitter::Sphere { center, radius, radiance } => {
                 let one_minus_cos = sphere::cap(from, center, radius)?;
@@ -173,14 +184,64 @@ impl Light {
             }),
             Emitter::SunCap { frame, one_minus_cos, radiance } => {
                 let direction = frame.world_from_local(warp::square_to_cap(u, one_minus_cos));
-                let pdf = 1.0 / (TAU * one_minus_cos);
-                Some(LightSample {
-                    direction,
-                    reach: direction,
-                    t_max: f32::INFINITY,
-                    normal: None,
-                    weight: radiance / pdf,
-                    pdf: Some(pdf),
+                Some(LightSample::of_sky(direction, radiance, 1.0 / (TAU * one_minus_cos)))
+            }
+        }
+    }
+
+    /// About what the light may bring to a point, if nothing is in its way; `None` only where that
+    /// is nothing.
+    pub fn estimate(&self, from: Vec3) -> Option<LightEstimate> {
+        let of_place = |center: Vec3, radius: f32, facing: &dyn Fn(f32) -> f32| {
+            let way = center - from;
+            let distance = way.length();
+            let estimate = LightEstimate {
+                direction: way.normalize_or(Vec3::Y),
+                half_width: if distance > radius { radius / distance } else { 1.0 },
+                irradiance: facing(distance),
+            };
+            (estimate.irradiance > 0.0).then_some(estimate)
+        };
+        // Somewhere on a plane light, the cosine of emission is up to (height + radius) / distance.
+        let of_plane = |center: Vec3, normal: Vec3, radius: f32, area: f32, radiance: Rgb| {
+            let height = normal.dot(from - center);
+            let facing = |distance: f32| {
+                let cos = ((height + radius) / distance).min(1.0);
+                luminance(radiance) * area * cos / (distance * distance + area / PI)
+            };
+            if height > 0.0 { of_place(center, radius, &facing) } else { None }
+        };
+        match self.emitter {
+            Emitter::Rectangle { center, frame, half: [a, b], radiance } => {
+                of_plane(center, frame.z, (a * a + b * b).sqrt(), 4.0 * a * b, radiance)
+            }
+            Emitter::Disk { center, frame, radius, radiance } => {
+                of_plane(center, frame.z, radius, PI * radius * radius, radiance)
+            }
+            Emitter::Sphere { center, radius, radiance } => of_place(center, radius, &|distance| {
+                let sin = radius / distance;
+                if sin < 1.0 { PI * sin * sin * luminance(radiance) } else { 0.0 }
+            }),
+            Emitter::Point { position, intensity } => {
+                of_place(position, 0.0, &|distance| luminance(intensity) / (distance * distance))
+            }
+            Emitter::Spot { position, normal, intensity } => {
+                let height = normal.dot(from - position);
+                of_place(position, 0.0, &|distance| {
+                    luminance(intensity) * height / (distance * distance * distance)
+                })
+            }
+            Emitter::Sun { towards, irradiance } => Some(LightEstimate {
+                direction: towards,
+                half_width: 0.0,
+                irradiance: luminance(irradiance),
+            }),
+            Emitter::SunCap { frame, one_minus_cos, radiance } => {
+                let sin2 = one_minus_cos * (2.0 - one_minus_cos);
+                Some(LightEstimate {
+                    direction: frame.z,
+                    half_width: sin2.sqrt(),
+                    irradiance: PI * sin2 * luminance(radiance),
                 })
             }
         }
@@ -257,9 +318,15 @@ impl Light {
 
 impl LightSample {
     /// Of the point of a light that is `reach` away, found with density `pdf` per solid angle.
-    fn at(reach: Vec3, normal: Option<Vec3>, radiance: Rgb, pdf: f32) -> Self {
+    pub fn of_place(reach: Vec3, normal: Option<Vec3>, radiance: Rgb, pdf: f32) -> Self {
         let (direction, weight) = (reach.normalize(), radiance / pdf);
         Self { direction, reach, t_max: 1.0, normal, weight, pdf: Some(pdf) }
+    }
+
+    /// Of a unit direction of the sky, found with density `pdf` per solid angle.
+    pub fn of_sky(direction: Vec3, radiance: Rgb, pdf: f32) -> Self {
+        let (t_max, weight) = (f32::INFINITY, radiance / pdf);
+        Self { direction, reach: direction, t_max, normal: None, weight, pdf: Some(pdf) }
     }
 }
 
@@ -311,7 +378,7 @@ fn from_area(
         return None;
     }
     let pdf = distance2 / (cos * area);
-    Some(LightSample::at(reach, Some(normal), radiance, pdf))
+    Some(LightSample::of_place(reach, Some(normal), radiance, pdf))
 }
 
 fn from_point(from: Vec3, position: Vec3, intensity: impl Fn(Vec3) -> Rgb) -> Option<LightSample> {

@@ -1,0 +1,200 @@
+//! Light that arrives by a shadow ray: of `[[lights]]`, and in "path" of whatever else glows.
+
+use glam::Vec3;
+
+use super::{Path, TileRenderer, dimension, power};
+use crate::brdf::Ward;
+use crate::color::{Rgb, luminance};
+use crate::math::Ray;
+use crate::render::shading::Shading;
+use crate::scene::light::{Light, LightSample};
+
+/// Shadow rays to `[[lights]]` at a surface, at most, where the lobe is not sampled as well.
+const LIGHTS_AT_ONCE: usize = 4;
+
+/// Which lights get a shadow ray at a surface, with the memory of the choice.
+#[derive(Default)]
+pub(super) struct LightChoice {
+    /// With which chance each light gets one.
+    chances: Vec<f32>,
+    chosen: Vec<u32>,
+}
+
+impl LightChoice {
+    /// All lights.
+    fn take_all(&mut self, n: usize) {
+        self.chances.clear();
+        self.chances.resize(n, 1.0);
+        self.chosen.clear();
+        self.chosen.extend(0..n as u32);
+    }
+
+    /// `n` of the lights, in proportion to the weights in `chances`, but none with a chance above 1:
+    /// systematic sampling by one number in [0, 1).
+    fn take(&mut self, n: usize, u: f32) {
+        // What would be chosen with a chance of 1 or more is set apart, until nothing would.
+        let (mut rest, mut n_open) = (self.chances.iter().sum::<f32>(), n);
+        let mut limit = f32::INFINITY;
+        while n_open > 0 {
+            let next = rest / n_open as f32;
+            let is_above = |w: &&f32| **w >= next && **w < limit;
+            let (count, sum) = self
+                .chances
+                .iter()
+                .filter(is_above)
+                .fold((0, 0.0), |(count, sum), w| (count + 1, sum + w));
+            if count == 0 || next <= 0.0 {
+                limit = next;
+                break;
+            }
+            (rest, n_open, limit) = (rest - sum, n_open.saturating_sub(count), next);
+        }
+        self.chosen.clear();
+        let mut level = u;
+        for (index, chance) in self.chances.iter_mut().enumerate() {
+            *chance = if *chance <= 0.0 { 0.0 } else { (*chance / limit).min(1.0) };
+            level += *chance;
+            if level >= 1.0 {
+                level -= 1.0;
+                self.chosen.push(index as u32);
+            }
+        }
+    }
+}
+
+impl TileRenderer<'_> {
+    /// Direct light of `[[lights]]`: a point of each chosen light, and a direction of the glossy
+    /// lobe. Where both can find the light, each counts by its share.
+    pub(super) fn sample_lights(&mut self, path: Path, shading: &Shading<'_>) {
+        let lights = &self.world.job.scene.lights;
+        let wo = shading.frame.local_from_world(shading.wo);
+        let glossy = &shading.glossy;
+        let is_glossy = glossy.specular != Rgb::ZERO && wo.z > 0.0;
+        self.choose_lights(path, shading, wo);
+        for index in &self.lights.chosen {
+            let chance = self.lights.chances[*index as usize];
+            let u = path.numbers.pair(dimension::of(path.depth, dimension::FIRST_LIGHT + index));
+            let light = &lights[*index as usize];
+            let Some(sample) = light.sample(shading.surface.point, u) else { continue };
+            if !shading.is_above(sample.direction) {
+                continue;
+            }
+            let wi = shading.frame.local_from_world(sample.direction);
+            let mut value = glossy.diffuse / std::f32::consts::PI;
+            if is_glossy {
+                let lobe = &glossy.lobe;
+                let share = sample.pdf.map_or(1.0, |pdf| power(chance * pdf, lobe.pdf(wo, wi)));
+                value += glossy.specular * (lobe.eval(wo, wi) * share);
+            }
+            let contribution = path.throughput * value * sample.weight * (wi.z / chance);
+            self.shadows.push(path.slot, shading, &sample, contribution);
+        }
+        if is_glossy {
+            self.probe_lights(path, shading, wo);
+        }
+    }
+
+    /// All lights where they are few; else some, by what each may bring.
+    fn choose_lights(&mut self, path: Path, shading: &Shading<'_>, wo: Vec3) {
+        let lights = &self.world.job.scene.lights;
+        if lights.len() <= LIGHTS_AT_ONCE {
+            return self.lights.take_all(lights.len());
+        }
+        let weights = lights.iter().map(|light| weight(light, shading, wo));
+        self.lights.chances.clear();
+        self.lights.chances.extend(weights);
+        let [u, _] = path.numbers.pair(dimension::of(path.depth, dimension::LIGHT_CHOICE));
+        self.lights.take(LIGHTS_AT_ONCE, u);
+    }
+
+    /// The glossy lobe's own direction, for the lights that it happens to meet: none hides another.
+    fn probe_lights(&mut self, path: Path, shading: &Shading<'_>, wo: Vec3) {
+        let lights = &self.world.job.scene.lights;
+        let lobe = &shading.glossy.lobe;
+        let u = path.numbers.pair(dimension::of(path.depth, dimension::PROBE));
+        let Some(wi) = lobe.sample(wo, u) else { return };
+        let direction = shading.frame.world_from_local(wi);
+        let pdf = lobe.pdf(wo, wi);
+        if !(shading.is_above(direction) && pdf > 0.0) {
+            return;
+        }
+        let from = shading.surface.point;
+        let ray = Ray::new(from, direction);
+        for (light, chance) in lights.iter().zip(&self.lights.chances) {
+            let Some((t, radiance)) = light.intersect(&ray) else { continue };
+            let share = power(pdf, chance * light.pdf(from, direction, t));
+            let value = shading.glossy.specular * (lobe.eval(wo, wi) * wi.z * share / pdf);
+            let sample = LightSample {
+                direction,
+                reach: if t.is_finite() { direction * t } else { direction },
+                t_max: if t.is_finite() { 1.0 } else { f32::INFINITY },
+                normal: light.normal_at(from + direction * t),
+                weight: radiance,
+                pdf: Some(pdf),
+            };
+            self.shadows.push(path.slot, shading, &sample, path.throughput * value * radiance);
+        }
+    }
+
+    /// Light of the next event that a scattered ray would meet: a way to something that glows, or to
+    /// the sky, weighted against the scattered ray, which is sent with the chance `scattering`.
+    /// Visible lights and glass stop it. Returns the sum of the weights of all emitters.
+    pub(super) fn sample_emitters(
+        &mut self,
+        path: Path,
+        shading: &Shading<'_>,
+        scattering: f32,
+    ) -> f32 {
+        let world = self.world;
+        if world.emission.is_empty() {
+            return 0.0;
+        }
+        let (from, normal) = (shading.surface.point, shading.frame.z);
+        let total = world.emission.weigh(from, normal, &mut self.emitter_weights);
+        if !(total > 0.0 && total.is_finite()) {
+            return 0.0;
+        }
+        let choice = path.numbers.pair(dimension::of(path.depth, dimension::EMITTER_CHOICE));
+        let u = path.numbers.pair(dimension::of(path.depth, dimension::EMITTER));
+        let weights = (&*self.emitter_weights, total);
+        let sample = world.emission.sample(&world.job.scene, from, weights, choice, u);
+        let Some((sample, pdf)) = sample.and_then(|sample| Some((sample, sample.pdf?))) else {
+            return total;
+        };
+        if !(shading.is_above(sample.direction) && pdf > 0.0) {
+            return total;
+        }
+        let wo = shading.frame.local_from_world(shading.wo);
+        let wi = shading.frame.local_from_world(sample.direction);
+        let share = power(pdf, scattering * shading.glossy.pdf(wo, wi));
+        let value = shading.glossy.eval(wo, wi) * (wi.z * share);
+        let ray = Ray { t_max: sample.t_max, ..Ray::new(from, sample.reach) };
+        if self.visible_light(&ray, sample.t_max).is_none() {
+            self.shadows.push(path.slot, shading, &sample, path.throughput * value * sample.weight);
+        }
+        total
+    }
+}
+
+/// About what a light brings to the eye by way of a surface; 0 only where that is nothing.
+fn weight(light: &Light, shading: &Shading<'_>, wo: Vec3) -> f32 {
+    let Some(estimate) = light.estimate(shading.surface.point) else { return 0.0 };
+    // The best cosine of any part of it.
+    let cos = (shading.frame.z.dot(estimate.direction) + estimate.half_width).clamp(0.0, 1.0);
+    let specular = luminance(shading.glossy.specular);
+    let mut value = (luminance(shading.glossy.diffuse) + 0.01 * specular) / std::f32::consts::PI;
+    if specular > 0.0 && wo.z > 0.0 && cos > 0.0 {
+        // The lobe as wide as half the angle of the light makes it.
+        let lobe = shading.glossy.lobe;
+        let widened =
+            |alpha: f32| (alpha * alpha + 0.25 * estimate.half_width * estimate.half_width).sqrt();
+        let (alpha_x, alpha_y) = (widened(lobe.alpha_x), widened(lobe.alpha_y));
+        let wide = Ward { alpha_x, alpha_y, ..lobe };
+        let wi = shading.frame.local_from_world(estimate.direction);
+        value += specular * wide.eval(wo, Vec3::new(wi.x, wi.y, wi.z.max(cos)).normalize());
+    }
+    let weight = estimate.irradiance * cos * value;
+    // Beside a light the estimate has no bound.
+    const MOST: f32 = 1e30;
+    if weight < MOST { weight } else { MOST }
+}
