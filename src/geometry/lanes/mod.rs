@@ -42,8 +42,6 @@ pub(super) trait Lanes: Copy {
     fn lt(self, other: Self) -> u32;
     /// Where self <= other.
     fn le(self, other: Self) -> u32;
-    /// Where self == other.
-    fn eq(self, other: Self) -> u32;
     /// `other` where the mask is set, else `self`; bits are moved as they are.
     fn blend(self, other: Self, mask: u32) -> Self;
     /// The same numbers in double precision.

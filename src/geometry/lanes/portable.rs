@@ -26,8 +26,7 @@ impl Isa for Portable {
         keys: &mut [u32; 8],
         references: &mut [u32; 8],
     ) {
-        let mut n = 0;
-        for child in (0..8).filter(|child| hits >> child & 1 == 1) {
+        for (n, child) in (0..8).filter(|child| hits >> child & 1 == 1).enumerate() {
             let key = key_of(enter.0[child]) | child as u32;
             let mut place = n;
             while place > 0 && keys[place - 1] > key {
@@ -37,7 +36,6 @@ impl Isa for Portable {
             }
             keys[place] = key;
             references[place] = children[child];
-            n += 1;
         }
     }
 
@@ -115,10 +113,6 @@ impl<const N: usize> Lanes for Array<N> {
     #[inline(always)]
     fn le(self, other: Self) -> u32 {
         self.compare(other, f32::le)
-    }
-    #[inline(always)]
-    fn eq(self, other: Self) -> u32 {
-        self.compare(other, f32::eq)
     }
     #[inline(always)]
     fn blend(self, other: Self, mask: u32) -> Self {

@@ -89,10 +89,6 @@ impl Lanes for F4 {
         unsafe { _mm_movemask_ps(_mm_cmple_ps(self.0, other.0)) as u32 }
     }
     #[inline(always)]
-    fn eq(self, other: Self) -> u32 {
-        unsafe { _mm_movemask_ps(_mm_cmpeq_ps(self.0, other.0)) as u32 }
-    }
-    #[inline(always)]
     fn blend(self, other: Self, mask: u32) -> Self {
         Self(unsafe {
             let bits = _mm_setr_epi32(1, 2, 4, 8);
@@ -130,10 +126,6 @@ impl Lanes for F8 {
     #[inline(always)]
     fn le(self, other: Self) -> u32 {
         unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0)) as u32 }
-    }
-    #[inline(always)]
-    fn eq(self, other: Self) -> u32 {
-        unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_EQ_OQ>(self.0, other.0)) as u32 }
     }
     #[inline(always)]
     fn blend(self, other: Self, mask: u32) -> Self {
@@ -182,10 +174,6 @@ impl Lanes for F16 {
     #[inline(always)]
     fn le(self, other: Self) -> u32 {
         u32::from(unsafe { _mm512_cmp_ps_mask::<_CMP_LE_OQ>(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn eq(self, other: Self) -> u32 {
-        u32::from(unsafe { _mm512_cmp_ps_mask::<_CMP_EQ_OQ>(self.0, other.0) })
     }
     #[inline(always)]
     fn blend(self, other: Self, mask: u32) -> Self {
@@ -261,10 +249,6 @@ impl Lanes for Pair<F8> {
     #[inline(always)]
     fn le(self, other: Self) -> u32 {
         self.0.le(other.0) | self.1.le(other.1) << F8::N
-    }
-    #[inline(always)]
-    fn eq(self, other: Self) -> u32 {
-        self.0.eq(other.0) | self.1.eq(other.1) << F8::N
     }
     #[inline(always)]
     fn blend(self, other: Self, mask: u32) -> Self {

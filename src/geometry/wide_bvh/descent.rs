@@ -121,7 +121,7 @@ impl Descent {
     #[inline(always)]
     pub(super) fn visit<I: Isa, T: Take>(&mut self, bvh: &WideBvh, ray: usize, hits: &mut T) {
         let block = &bvh.blocks[(self.current & !LEAF) as usize];
-        if let Some((mut mask, parameters)) = self.hits::<I>(block) {
+        if let Some((mut mask, parameters)) = self.hits::<I, T>(block) {
             while mask != 0 {
                 let lane = mask.trailing_zeros() as usize;
                 mask &= mask - 1;
@@ -137,23 +137,30 @@ impl Descent {
 
     /// Where the ray meets the triangles of a block before its limit.
     #[inline(always)]
-    fn hits<I: Isa>(&self, block: &Block) -> Option<(u32, [f32; BLOCK])> {
-        let mut relative = [[I::F4::splat(0.0); 3]; 3];
-        for i in 0..3 {
-            let axis = self.axes.order[i];
-            let origin = I::F4::splat(self.origin[i]);
-            for corner in 0..3 {
-                relative[corner][i] = I::F4::load(&block.corners[corner][axis]).sub(origin);
-            }
-        }
+    fn hits<I: Isa, T: Take>(&self, block: &Block) -> Option<(u32, [f32; BLOCK])> {
         let shear = [I::F4::splat(self.axes.shear[0]), I::F4::splat(self.axes.shear[1])];
-        let [a, b, c] = relative;
-        let corners = [leaf::sheared(a, shear), leaf::sheared(b, shear), leaf::sheared(c, shear)];
+        let [a, b, c] = &block.corners;
+        let corners = [
+            leaf::sheared(self.relative::<I>(a), shear),
+            leaf::sheared(self.relative::<I>(b), shear),
+            leaf::sheared(self.relative::<I>(c), shear),
+        ];
         let (speed, pace) = (I::F4::splat(self.axes.speed), I::F4::splat(self.pace));
-        let (mask, t) = leaf::hits(corners, speed, pace, I::F4::splat(self.limit))?;
+        let (mask, t) = leaf::hits::<_, T>(corners, speed, pace, I::F4::splat(self.limit))?;
         let mut parameters = [0.0; BLOCK];
         t.store(&mut parameters);
         Some((mask, parameters))
+    }
+
+    /// A corner of four triangles as seen from the origin, by the axes' order.
+    #[inline(always)]
+    fn relative<I: Isa>(&self, corner: &[[f32; BLOCK]; 3]) -> [I::F4; 3] {
+        let [x, y, z] = self.axes.order;
+        [
+            I::F4::load(&corner[x]).sub(I::F4::splat(self.origin[0])),
+            I::F4::load(&corner[y]).sub(I::F4::splat(self.origin[1])),
+            I::F4::load(&corner[z]).sub(I::F4::splat(self.origin[2])),
+        ]
     }
 }
 

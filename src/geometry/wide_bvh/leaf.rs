@@ -2,6 +2,7 @@
 //! lane and to the bit.
 
 use crate::geometry::lanes::{DoubleLanes, Lanes};
+use crate::geometry::wide_bvh::stream::Take;
 
 /// A corner relative to the ray's origin, sheared so that the direction is along z.
 #[inline(always)]
@@ -12,9 +13,9 @@ pub(super) fn sheared<F: Lanes>(relative: [F; 3], shear: [F; 2]) -> [F; 3] {
 
 /// Where rays meet triangles: the lanes that do at a parameter above 0 and at most `limit`, and the
 /// parameters. `corners` are sheared, `speed` is the direction's largest component and `pace` 1 over
-/// it.
+/// it. Where any hit will do, its parameter may be that of a corner.
 #[inline(always)]
-pub(super) fn hits<F: Lanes>(
+pub(super) fn hits<F: Lanes, T: Take>(
     corners: [[F; 3]; 3],
     speed: F,
     pace: F,
@@ -31,11 +32,20 @@ pub(super) fn hits<F: Lanes>(
     }
     // The parameter lies between those of the corners, give or take the rounding.
     let (t_a, t_b, t_c) = (a[2].mul(pace), b[2].mul(pace), c[2].mul(pace));
-    let least = t_a.min(t_b).min(t_c);
+    let (least, greatest) = (t_a.min(t_b).min(t_c), t_a.max(t_b).max(t_c));
     let slack = F::splat(1.0 - 1e-6).mul(least);
-    mask &= least.min(slack).le(limit) & zero.le(limit) & zero.lt(t_a.max(t_b).max(t_c));
+    mask &= least.min(slack).le(limit) & zero.le(limit) & zero.lt(greatest);
     if mask == 0 {
         return None;
+    }
+    if !T::SORTED {
+        // All signs are certain, and the whole triangle is between the ends.
+        let is_inside =
+            (zero.lt(u) & zero.lt(v) & zero.lt(w)) | (u.lt(zero) & v.lt(zero) & w.lt(zero));
+        let is_between = zero.lt(least) & F::splat(1.0 + 1e-6).mul(greatest).lt(limit);
+        if mask & !(is_inside & is_between) == 0 {
+            return Some((mask, greatest));
+        }
     }
     let (is_hit, t) = exact(corners, speed);
     mask &= is_hit & t.le(limit) & zero.lt(t);

@@ -44,7 +44,7 @@ struct Node {
 
 /// Four triangles; the last is repeated where there are fewer.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
+#[repr(C, align(32))]
 struct Block {
     /// By corner, by axis.
     corners: [[[f32; BLOCK]; 3]; 3],
@@ -62,7 +62,20 @@ pub(super) struct WideBvh {
 }
 
 impl Node {
-    const EMPTY: Self = Self { bounds: [[0.0; WIDTH]; 6], children: [0; WIDTH], n_children: 0 };
+    /// Places without a child have bounds that nothing touches, and lead to a block even where
+    /// overflow makes a ray touch everything.
+    const EMPTY: Self = Self {
+        bounds: [
+            [f32::INFINITY; WIDTH],
+            [f32::INFINITY; WIDTH],
+            [f32::INFINITY; WIDTH],
+            [f32::NEG_INFINITY; WIDTH],
+            [f32::NEG_INFINITY; WIDTH],
+            [f32::NEG_INFINITY; WIDTH],
+        ],
+        children: [LEAF; WIDTH],
+        n_children: 0,
+    };
 
     fn set_bounds(&mut self, child: usize, bounds: &Aabb) {
         for axis in 0..3 {

@@ -18,10 +18,6 @@ use crate::math::RayBatch;
 const LANES: usize = 16;
 /// Groups of a packet.
 const GROUPS: usize = 4;
-/// Directions of a packet lie in a cube of this side where the largest component is 1.
-const SPREAD_OF_PACKET: f32 = 0.08;
-/// The same of a single group.
-const SPREAD_OF_GROUP: f32 = 0.2;
 /// Seven children a level may wait; the builder keeps the tree below 22 levels.
 const STACK: usize = 160;
 
@@ -50,24 +46,34 @@ pub(super) fn blocked<I: Isa>(
 /// Traces all rays of a batch, together where they go together.
 #[inline(always)]
 fn trace<I: Isa, T: Take>(bvh: &WideBvh, rays: &RayBatch, fleet: &mut Fleet, hits: &mut T) {
+    let (spread_of_packet, spread_of_group) = spreads(bvh.blocks.len());
+    let mut packet = Packet::<I>::idle();
     // Rays before this one are done, from here to the packet at hand they wait for the stream.
     let mut waiting = 0;
     let mut first = 0;
     while first < rays.len() {
         let mut n = (LANES * GROUPS).min(rays.len() - first);
-        let mut is_together = go_together::<I>(rays, first, n, SPREAD_OF_PACKET);
+        let mut is_together = go_together::<I>(rays, first, n, spread_of_packet);
         if !is_together {
             n = LANES.min(n);
-            is_together = go_together::<I>(rays, first, n, SPREAD_OF_GROUP);
+            is_together = go_together::<I>(rays, first, n, spread_of_group);
         }
         if is_together && n >= LANES / 2 {
             stream::trace::<I, T>(bvh, rays, waiting, first - waiting, fleet, hits);
-            Packet::<I>::new(bvh, rays, first, n, hits).walk(bvh, hits);
+            packet.start(bvh, rays, first, n, hits);
+            packet.walk(bvh, hits);
             waiting = first + n;
         }
         first += n;
     }
     stream::trace::<I, T>(bvh, rays, waiting, rays.len() - waiting, fleet, hits);
+}
+
+/// How far apart the directions of a packet and of a group may be: the finer the mesh, the sooner
+/// rays part.
+fn spreads(n_blocks: usize) -> (f32, f32) {
+    let group = (25.0 / (n_blocks as f32).sqrt()).clamp(0.1, 1.0);
+    (0.5 * group, group)
 }
 
 /// Whether directions are no farther apart than `spread` along each axis, in units of the largest
@@ -119,6 +125,7 @@ struct Packet<I: Isa> {
     farthest: f32,
     /// Interval test along each axis; none where directions differ in their sign.
     intervals: [Option<Interval>; 3],
+    stack: Stack,
 }
 
 /// Bounds of a packet's reciprocal directions and origins along one axis, all directions having the
@@ -136,16 +143,26 @@ struct Interval {
 }
 
 impl<I: Isa> Packet<I> {
+    /// No rays.
     #[inline(always)]
-    fn new<T: Take>(bvh: &WideBvh, rays: &RayBatch, first: usize, n: usize, hits: &T) -> Self {
-        let zero = I::F16::splat(0.0);
-        let mut packet = Self {
+    fn idle() -> Self {
+        Self {
             groups: [Group::idle(), Group::idle(), Group::idle(), Group::idle()],
-            n_groups: n.div_ceil(LANES),
-            first,
+            n_groups: 0,
+            first: 0,
             farthest: -1.0,
             intervals: [None; 3],
-        };
+            stack: Stack { entries: [Entry::NONE; STACK], n: 0 },
+        }
+    }
+
+    /// Takes on the rays `first..first + n` of a batch.
+    #[inline(always)]
+    fn start<T: Take>(&mut self, bvh: &WideBvh, rays: &RayBatch, first: usize, n: usize, hits: &T) {
+        let zero = I::F16::splat(0.0);
+        self.n_groups = n.div_ceil(LANES);
+        self.first = first;
+        self.farthest = -1.0;
         let mut farthest_origin = zero;
         for axis in 0..3 {
             for offset in (0..n).step_by(LANES) {
@@ -156,27 +173,26 @@ impl<I: Isa> Packet<I> {
         }
         let pad = WideBvh::pad(farthest_origin.greatest(), bvh.magnitude);
         for axis in 0..3 {
-            for index in 0..packet.n_groups {
+            for index in 0..self.n_groups {
                 let offset = index * LANES;
                 let origin = lanes::<I::F16>(&rays.origin[axis], first + offset, n - offset);
                 let direction = lanes::<I::F16>(&rays.direction[axis], first + offset, n - offset);
-                packet.groups[index].set_axis(axis, origin, direction, pad);
+                self.groups[index].set_axis(axis, origin, direction, pad);
             }
-            packet.intervals[axis] = packet.interval(axis, pad);
+            self.intervals[axis] = self.interval(axis, pad);
         }
-        for index in 0..packet.n_groups {
+        for index in 0..self.n_groups {
             let offset = index * LANES;
             let mut limits = [-1.0; LANES];
             for (lane, limit) in limits.iter_mut().enumerate().take(n - offset) {
                 *limit = hits.limit(first + offset + lane);
             }
-            let group = &mut packet.groups[index];
+            let group = &mut self.groups[index];
             group.limit = I::F16::load(&limits);
             group.farthest = group.limit.greatest();
-            packet.farthest = packet.farthest.max(group.farthest);
+            self.farthest = self.farthest.max(group.farthest);
             group.set_axes(rays, first + offset, n - offset);
         }
-        packet
     }
 
     /// What the box tests along an axis have in common, if the directions have their sign.
@@ -219,11 +235,11 @@ impl<I: Isa> Packet<I> {
     fn walk<T: Take>(&mut self, bvh: &WideBvh, hits: &mut T) {
         let mut current =
             Entry { reference: bvh.root, enter: 0.0, groups: (1 << self.n_groups) - 1 };
-        let mut stack = Stack { entries: [current; STACK], n: 0 };
+        self.stack.n = 0;
         loop {
             while current.reference & LEAF == 0 {
                 let node = &bvh.nodes[current.reference as usize];
-                match self.enter(node, current.groups, &mut stack) {
+                match self.enter(node, current.groups) {
                     Some(nearest) => current = nearest,
                     None => break,
                 }
@@ -235,7 +251,7 @@ impl<I: Isa> Packet<I> {
                 }
             }
             loop {
-                let Some(entry) = stack.pop() else { return };
+                let Some(entry) = self.stack.pop() else { return };
                 if entry.enter <= self.farthest {
                     current = entry;
                     break;
@@ -246,7 +262,7 @@ impl<I: Isa> Packet<I> {
 
     /// The nearest of the children that some ray touches; the others go onto the stack.
     #[inline(always)]
-    fn enter(&self, node: &Node, groups: u32, stack: &mut Stack) -> Option<Entry> {
+    fn enter(&mut self, node: &Node, groups: u32) -> Option<Entry> {
         let (mut enter, mut leave) = (I::F8::splat(0.0), I::F8::splat(self.farthest));
         for interval in &self.intervals {
             let Some(interval) = interval else { continue };
@@ -264,7 +280,7 @@ impl<I: Isa> Packet<I> {
         let mut left = enter.le(leave) & ((1 << node.n_children) - 1);
         let mut enters = [0.0; WIDTH];
         enter.store(&mut enters);
-        let base = stack.n;
+        let base = self.stack.n;
         while left != 0 {
             let child = left.trailing_zeros() as usize;
             left &= left - 1;
@@ -278,10 +294,11 @@ impl<I: Isa> Packet<I> {
             }
             if touching != 0 {
                 let reference = node.children[child];
-                stack.insert(base, Entry { reference, enter: enters[child], groups: touching });
+                self.stack
+                    .insert(base, Entry { reference, enter: enters[child], groups: touching });
             }
         }
-        if stack.n == base { None } else { stack.pop() }
+        if self.stack.n == base { None } else { self.stack.pop() }
     }
 
     /// Tests the triangles of a block; tells whether a limit changed.
@@ -411,7 +428,7 @@ impl<I: Isa> Group<I> {
             if corner > 0 && id == block.ids[corner - 1] {
                 break;
             }
-            let Some((mut mask, t)) = self.hits(block, corner) else { continue };
+            let Some((mut mask, t)) = self.hits::<T>(block, corner) else { continue };
             let (mut parameters, mut limits) = ([0.0; LANES], [0.0; LANES]);
             t.store(&mut parameters);
             self.limit.store(&mut limits);
@@ -428,14 +445,14 @@ impl<I: Isa> Group<I> {
 
     /// Where the rays meet one triangle of a block before their limits.
     #[inline(always)]
-    fn hits(&self, block: &Block, lane: usize) -> Option<(u32, I::F16)> {
+    fn hits<T: Take>(&self, block: &Block, lane: usize) -> Option<(u32, I::F16)> {
         let [a, b, c] = &block.corners;
         let corners = [
             leaf::sheared(self.relative(a, lane), self.shear),
             leaf::sheared(self.relative(b, lane), self.shear),
             leaf::sheared(self.relative(c, lane), self.shear),
         ];
-        leaf::hits(corners, self.speed, self.pace, self.limit)
+        leaf::hits::<_, T>(corners, self.speed, self.pace, self.limit)
     }
 
     #[inline(always)]
@@ -454,6 +471,10 @@ struct Entry {
     reference: u32,
     enter: f32,
     groups: u32,
+}
+
+impl Entry {
+    const NONE: Self = Self { reference: 0, enter: 0.0, groups: 0 };
 }
 
 struct Stack {

@@ -16,7 +16,7 @@ const FLEET: usize = 32;
 /// What is done with hits. A trait rather than a closure: its methods are inlined for certain, into
 /// code compiled for the registers that it uses.
 pub(super) trait Take {
-    /// Whether nearer hits matter more than others.
+    /// Whether nearer hits matter more than others; otherwise any will do.
     const SORTED: bool;
     /// Up to where hits of a ray are of interest at first, below 0 if none is.
     fn limit(&self, ray: usize) -> f32;
