@@ -79,7 +79,11 @@ impl Headless {
         let deltas = std::mem::take(&mut output.textures_delta);
         let root = output.viewport_output.get(&ViewportId::ROOT);
         HeadlessFrame {
-            images: deltas.set.iter().map(|(_, delta)| delta.image.clone()).collect(),
+            images: deltas
+                .set
+                .values()
+                .flat_map(|deltas| deltas.iter().map(|delta| delta.image.clone()))
+                .collect(),
             n_triangles: n_triangles.sum(),
             wants_another: root.is_some_and(|root| root.repaint_delay == Duration::ZERO),
         }

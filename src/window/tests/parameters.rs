@@ -250,7 +250,11 @@ fn a_figure_or_a_switch_changes_its_own_parameter_and_no_other() {
                     None => break,
                     Some(changes) if changes.is_empty() && value != 5.0 => {}
                     Some(changes) => {
-                        assert_eq!(changes, [path.clone()], "{label} changes something else");
+                        assert_eq!(
+                            changes,
+                            std::slice::from_ref(&path),
+                            "{label} changes something else"
+                        );
                         let valid = scene_file::validate(&harness.state().scene);
                         assert!(valid.is_ok(), "{label} makes the scene invalid: {valid:?}");
                         n_driven += 1;

@@ -65,9 +65,11 @@ fn unsaved_edits_are_asked_about_before_a_scene_is_closed() {
 fn theme_panel_size_and_recent_files_are_there_again() {
     let folder = tempfile::tempdir().unwrap();
     let path = scene_file(folder.path());
-    let mut before = InterfaceState::default();
-    before.theme = ThemePreference::Light;
-    before.panel_width = 420.0;
+    let mut before = InterfaceState {
+        theme: ThemePreference::Light,
+        panel_width: 420.0,
+        ..InterfaceState::default()
+    };
     before.remember_file(folder.path().join("older.toml"));
     let mut harness = window_of(&path, SIZE, Remembered::of(&before));
     harness.run_steps(2);
