@@ -19,8 +19,6 @@ const PASS_SECS: f64 = 0.25;
 const PUBLISH_INTERVAL: Duration = Duration::from_millis(33);
 /// Samples a second before anything has been measured.
 const FIRST_GUESS_RATE: f64 = 4e5;
-/// With fewer samples the estimate of the noise is not to be trusted.
-const LEAST_FOR_NOISE: u32 = 8;
 
 /// A job at work.
 struct Work<W> {
@@ -263,7 +261,7 @@ impl<R: Renderer> Driver<'_, R> {
             status.noise_percent = work.film.noise_percent();
             status.n_invalid = work.n_invalid;
             status.rays_per_second = self.rays_per_second;
-            status.seconds_left = seconds_left(&goal, work);
+            status.seconds_left = goal.seconds_left(&work.film, work.seconds);
         });
         let is_last = is_reached(&goal, work);
         let is_first = before == 0;
@@ -311,26 +309,5 @@ impl<R: Renderer> Driver<'_, R> {
 }
 
 fn is_reached<W>(goal: &Goal, work: &Work<W>) -> bool {
-    let n_samples = work.film.n_samples();
-    let is_clean = n_samples >= LEAST_FOR_NOISE
-        && goal.noise_percent.zip(work.film.noise_percent()).is_some_and(|(goal, now)| now <= goal);
-    n_samples >= goal.samples
-        || is_clean
-        || (n_samples > 0 && goal.seconds.is_some_and(|seconds| work.seconds >= seconds))
-}
-
-/// To the nearest of the goals, at the speed so far; noise falls with the square root of samples.
-fn seconds_left<W>(goal: &Goal, work: &Work<W>) -> Option<f64> {
-    let n_samples = f64::from(work.film.n_samples());
-    if n_samples == 0.0 {
-        return None;
-    }
-    let by_samples = work.seconds * (f64::from(goal.samples) / n_samples - 1.0);
-    let by_time = goal.seconds.map(|seconds| seconds - work.seconds);
-    let by_noise = goal
-        .noise_percent
-        .zip(work.film.noise_percent())
-        .map(|(goal, now)| work.seconds * ((now / goal).powi(2) - 1.0));
-    let nearest = [by_time, by_noise].into_iter().flatten().fold(by_samples, f64::min);
-    Some(nearest.max(0.0))
+    goal.is_reached(&work.film, work.seconds)
 }
