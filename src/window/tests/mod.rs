@@ -1,7 +1,10 @@
 //! The window driven by label and role, without a display.
 
+mod export;
 mod layout;
 mod panels;
+pub(in crate::window) mod parameters;
+mod start;
 mod whole;
 
 use crate::scene::description::{
