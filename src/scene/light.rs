@@ -3,16 +3,19 @@
 //! Rectangles, spheres and suns are sampled uniformly by the solid angle that they fill, disks
 //! nearly so; small and far rectangles and disks by their area, which is the same there.
 
+mod estimate;
 mod sphere;
 
 use std::f32::consts::{PI, TAU};
 
 use glam::{DVec3, Vec3};
 
-use crate::color::{Rgb, luminance};
+use crate::color::Rgb;
 use crate::math::spherical_ellipse::SphericalEllipse;
 use crate::math::spherical_rectangle::SphericalRectangle;
 use crate::math::{Frame, Ray, portable, warp};
+
+pub use estimate::LightEstimate;
 
 /// A source of light. Never blocks light; seen by the camera only if `visible`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,17 +113,6 @@ pub struct LightSample {
     pub pdf: Option<f32>,
 }
 
-/// What a light may bring to a point, roughly: to choose among lights by.
-#[derive(Clone, Copy, Debug)]
-pub struct LightEstimate {
-    /// Unit direction towards its middle.
-    pub direction: Vec3,
-    /// Sine of the angle between its middle and its rim, 0..=1, at most too large.
-    pub half_width: f32,
-    /// Luminance of the irradiance of a surface that faces it, above 0.
-    pub irradiance: f32,
-}
-
 impl Light {
     /// Samples the light from `from` with two numbers in [0, 1). `None` where nothing arrives.
     pub fn sample(&self, from: Vec3, u: [f32; 2]) -> Option<LightSample> {
@@ -185,64 +177,6 @@ impl Light {
             Emitter::SunCap { frame, one_minus_cos, radiance } => {
                 let direction = frame.world_from_local(warp::square_to_cap(u, one_minus_cos));
                 Some(LightSample::of_sky(direction, radiance, 1.0 / (TAU * one_minus_cos)))
-            }
-        }
-    }
-
-    /// About what the light may bring to a point, if nothing is in its way; `None` only where that
-    /// is nothing.
-    pub fn estimate(&self, from: Vec3) -> Option<LightEstimate> {
-        let of_place = |center: Vec3, radius: f32, facing: &dyn Fn(f32) -> f32| {
-            let way = center - from;
-            let distance = way.length();
-            let estimate = LightEstimate {
-                direction: way.normalize_or(Vec3::Y),
-                half_width: if distance > radius { radius / distance } else { 1.0 },
-                irradiance: facing(distance),
-            };
-            (estimate.irradiance > 0.0).then_some(estimate)
-        };
-        // Somewhere on a plane light, the cosine of emission is up to (height + radius) / distance.
-        let of_plane = |center: Vec3, normal: Vec3, radius: f32, area: f32, radiance: Rgb| {
-            let height = normal.dot(from - center);
-            let facing = |distance: f32| {
-                let cos = ((height + radius) / distance).min(1.0);
-                luminance(radiance) * area * cos / (distance * distance + area / PI)
-            };
-            if height > 0.0 { of_place(center, radius, &facing) } else { None }
-        };
-        match self.emitter {
-            Emitter::Rectangle { center, frame, half: [a, b], radiance } => {
-                of_plane(center, frame.z, (a * a + b * b).sqrt(), 4.0 * a * b, radiance)
-            }
-            Emitter::Disk { center, frame, radius, radiance } => {
-                of_plane(center, frame.z, radius, PI * radius * radius, radiance)
-            }
-            Emitter::Sphere { center, radius, radiance } => of_place(center, radius, &|distance| {
-                let sin = radius / distance;
-                if sin < 1.0 { PI * sin * sin * luminance(radiance) } else { 0.0 }
-            }),
-            Emitter::Point { position, intensity } => {
-                of_place(position, 0.0, &|distance| luminance(intensity) / (distance * distance))
-            }
-            Emitter::Spot { position, normal, intensity } => {
-                let height = normal.dot(from - position);
-                of_place(position, 0.0, &|distance| {
-                    luminance(intensity) * height / (distance * distance * distance)
-                })
-            }
-            Emitter::Sun { towards, irradiance } => Some(LightEstimate {
-                direction: towards,
-                half_width: 0.0,
-                irradiance: luminance(irradiance),
-            }),
-            Emitter::SunCap { frame, one_minus_cos, radiance } => {
-                let sin2 = one_minus_cos * (2.0 - one_minus_cos);
-                Some(LightEstimate {
-                    direction: frame.z,
-                    half_width: sin2.sqrt(),
-                    irradiance: PI * sin2 * luminance(radiance),
-                })
             }
         }
     }
@@ -345,8 +279,8 @@ fn in_world(frame: &Frame, v: DVec3) -> DVec3 {
 }
 
 /// From this distance on, in squared half diagonals or radii, light is sampled by area: distance and
-/// cosine hardly change over it.
-const FAR2: f64 = 100.0;
+/// cosine change little over it, and the way there is short.
+const FAR2: f64 = 16.0;
 
 /// A rectangle of these half extents from a point before it; `None` where it is sampled by area.
 fn spherical_rectangle(half: [f32; 2], seen: DVec3) -> Option<SphericalRectangle> {

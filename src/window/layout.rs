@@ -222,6 +222,7 @@ impl App {
             seconds: status.seconds,
             seconds_left: status.seconds_left,
             rays_per_second: status.rays_per_second,
+            n_invalid: status.n_invalid,
             n_threads: status.n_threads,
             size,
             zoom_percent: self.viewport.zoom_percent,

@@ -19,6 +19,8 @@ pub(super) struct StatusLine {
     pub(super) seconds_left: Option<f64>,
     /// Rays per second over the last while.
     pub(super) rays_per_second: f64,
+    /// Samples that were not finite and count as black.
+    pub(super) n_invalid: u64,
     /// Render threads.
     pub(super) n_threads: usize,
     /// Size of the picture in pixels, and its zoom in percent.
@@ -137,6 +139,9 @@ fn details(line: &StatusLine) -> String {
     if let Some(noise) = line.noise_percent {
         parts.push(format!("noise {noise:.1} %"));
     }
+    if line.n_invalid > 0 {
+        parts.push(format!("{} samples not finite", line.n_invalid));
+    }
     if line.seconds > 0.0 {
         let left = line.seconds_left.filter(|_| working);
         let left = left.map_or(String::new(), |left| format!(", {} left", duration(left)));
@@ -184,6 +189,7 @@ mod tests {
             seconds: 3.9,
             seconds_left: Some(12.9),
             rays_per_second: 8.4e6,
+            n_invalid: 0,
             n_threads: 2,
             size: [1280, 720],
             zoom_percent: 100.0,

@@ -1,5 +1,6 @@
 //! Radiance against closed forms and quadrature.
 
+mod emitters;
 mod furnace;
 mod glass;
 mod gloss;

@@ -137,6 +137,19 @@ pub(crate) fn assert_close(found: f64, expected: f64, tolerance: f64, what: &str
     assert!(difference <= limit, "{what}: {found}, not {expected} within {tolerance}");
 }
 
+/// Irradiance by a uniform polygon of unit radiance, all of it above the horizon.
+///
+/// Source: J. H. Lambert, "Photometria", 1760.
+pub(crate) fn lambert_polygon(point: DVec3, normal: DVec3, corners: &[DVec3]) -> f64 {
+    let mut sum = 0.0;
+    for (i, a) in corners.iter().enumerate() {
+        let a = (*a - point).normalize();
+        let b = (corners[(i + 1) % corners.len()] - point).normalize();
+        sum += a.dot(b).acos() * a.cross(b).normalize().dot(normal);
+    }
+    0.5 * sum.abs()
+}
+
 /// Numbers in [0, 1) from a counter: the same in every run.
 pub(crate) struct Numbers(u64);
 

@@ -5,6 +5,7 @@
 //! heuristic, so the chance of the choice belongs to the density. Infinite planes, the inside of
 //! solids and the darker half of the sky are left to scattered rays.
 
+mod axial;
 mod sky;
 mod solid;
 #[cfg(test)]

@@ -10,7 +10,7 @@ use crate::render::shading::Shading;
 use crate::scene::light::{Light, LightSample};
 
 /// Shadow rays to `[[lights]]` at a surface, at most, where the lobe is not sampled as well.
-const LIGHTS_AT_ONCE: usize = 4;
+const LIGHTS_AT_ONCE: usize = 8;
 
 /// Which lights get a shadow ray at a surface, with the memory of the choice.
 #[derive(Default)]
@@ -30,29 +30,27 @@ impl LightChoice {
     }
 
     /// `n` of the lights, in proportion to the weights in `chances`, but none with a chance above 1:
-    /// systematic sampling by one number in [0, 1).
+    /// systematic sampling by one number in [0, 1). What has a weight above 0 has a chance above 0.
     fn take(&mut self, n: usize, u: f32) {
         // What would be chosen with a chance of 1 or more is set apart, until nothing would.
-        let (mut rest, mut n_open) = (self.chances.iter().sum::<f32>(), n);
-        let mut limit = f32::INFINITY;
-        while n_open > 0 {
-            let next = rest / n_open as f32;
-            let is_above = |w: &&f32| **w >= next && **w < limit;
-            let (count, sum) = self
-                .chances
-                .iter()
-                .filter(is_above)
-                .fold((0, 0.0), |(count, sum), w| (count + 1, sum + w));
-            if count == 0 || next <= 0.0 {
-                limit = next;
+        let (mut limit, mut n_apart) = (f32::INFINITY, 0);
+        loop {
+            let open = self.chances.iter().filter(|w| **w < limit);
+            let next = open.sum::<f32>() / n.saturating_sub(n_apart).max(1) as f32;
+            let now_apart = self.chances.iter().filter(|w| **w >= next && **w > 0.0).count();
+            limit = next.min(limit);
+            if now_apart == n_apart || now_apart >= n {
                 break;
             }
-            (rest, n_open, limit) = (rest - sum, n_open.saturating_sub(count), next);
+            n_apart = now_apart;
         }
         self.chosen.clear();
         let mut level = u;
         for (index, chance) in self.chances.iter_mut().enumerate() {
-            *chance = if *chance <= 0.0 { 0.0 } else { (*chance / limit).min(1.0) };
+            *chance = if *chance >= limit && *chance > 0.0 { 1.0 } else { *chance / limit };
+            if !(*chance > 0.0) {
+                *chance = 0.0;
+            }
             level += *chance;
             if level >= 1.0 {
                 level -= 1.0;
@@ -197,4 +195,50 @@ fn weight(light: &Light, shading: &Shading<'_>, wo: Vec3) -> f32 {
     // Beside a light the estimate has no bound.
     const MOST: f32 = 1e30;
     if weight < MOST { weight } else { MOST }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Over all numbers every light is chosen as often as its chance says; chances are in proportion
+    /// to the weights, or 1, and no light with weight is left out.
+    #[test]
+    fn lights_are_chosen_as_often_as_their_chance_says() {
+        let cases: [&[f32]; 7] = [
+            &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0],
+            &[0.1, 100.0, 0.2, 90.0, 0.3, 0.0, 0.7],
+            &[0.1, 0.7, 0.3],
+            &[0.0, 0.1, 0.0, 0.7, 0.0, 0.3, 0.0],
+            &[1e-7, 0.3, 1e30, 0.2, 1e-20, 5.0],
+            &[0.1; 9],
+            &[0.0; 5],
+        ];
+        for weights in cases {
+            for n in 1..=4 {
+                let steps = 4000;
+                let mut counts = vec![0_u32; weights.len()];
+                let mut choice = LightChoice::default();
+                for step in 0..steps {
+                    choice.chances = weights.to_vec();
+                    choice.take(n, (step as f32 + 0.5) / steps as f32);
+                    choice.chosen.iter().for_each(|index| counts[*index as usize] += 1);
+                    assert!(choice.chosen.len() <= n + 1, "{weights:?}: {:?}", choice.chosen);
+                }
+                let below = |i: &usize| choice.chances[*i] > 0.0 && choice.chances[*i] < 1.0;
+                let ratios: Vec<f32> = (0..weights.len())
+                    .filter(below)
+                    .map(|i| choice.chances[i] / weights[i])
+                    .collect();
+                for (i, chance) in choice.chances.iter().enumerate() {
+                    assert!((0.0..=1.0).contains(chance), "{weights:?}: chance {chance}");
+                    assert_eq!(*chance > 0.0, weights[i] > 0.0, "{weights:?}: chance {chance}");
+                    let share = f64::from(counts[i]) / f64::from(steps);
+                    assert!((share - f64::from(*chance)).abs() < 1e-3, "{weights:?}: {share}");
+                }
+                let even = ratios.iter().all(|ratio| (ratio / ratios[0] - 1.0).abs() < 1e-4);
+                assert!(even, "{weights:?}: ratios {ratios:?}");
+            }
+        }
+    }
 }

@@ -4,26 +4,13 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec3;
 
-use crate::common::{Look, WHITE_FLOOR, assert_close, irradiance};
+use crate::common::{Look, WHITE_FLOOR, assert_close, irradiance, lambert_polygon};
 
 /// Looks at the origin of the floor from the side, past whatever hangs above it.
 const ASIDE: [f64; 3] = [3.0, 1.0, 0.7];
 
 fn light(keys: &str) -> String {
     format!("{WHITE_FLOOR}\n[[lights]]\n{keys}\n")
-}
-
-/// Irradiance by a uniform polygon of unit radiance, all of it above the horizon.
-///
-/// Source: J. H. Lambert, "Photometria", 1760.
-fn lambert_polygon(point: DVec3, normal: DVec3, corners: &[DVec3]) -> f64 {
-    let mut sum = 0.0;
-    for (i, a) in corners.iter().enumerate() {
-        let a = (*a - point).normalize();
-        let b = (corners[(i + 1) % corners.len()] - point).normalize();
-        sum += a.dot(b).acos() * a.cross(b).normalize().dot(normal);
-    }
-    0.5 * sum.abs()
 }
 
 #[test]
