@@ -37,8 +37,8 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     let n_threads = arguments.threads.map_or_else(threads::available, |n| n as usize);
     let pool = threads::pool("render", n_threads)?;
     let world = world_of(&loaded, arguments.accelerator, &pool)?;
-    let mut progress = Progress::new(u64::from(samples), arguments.quiet);
     let goal = Goal { samples, seconds: arguments.time, noise_percent: arguments.noise };
+    let mut progress = Progress::new(goal, arguments.quiet);
     let never = AtomicBool::new(false);
     let Developed { film, n_invalid } =
         develop(&world, &pool, goal, start, &never, |film| progress.show(film))?;

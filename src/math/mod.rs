@@ -7,6 +7,7 @@ pub mod approx;
 mod batch;
 pub mod distribution;
 mod frame;
+mod nets;
 pub mod noise;
 pub mod portable;
 pub mod sampler;

@@ -13,6 +13,8 @@ mod density;
 #[cfg(test)]
 mod floors;
 #[cfg(test)]
+mod golden;
+#[cfg(test)]
 mod hostile;
 #[cfg(test)]
 mod noise;

@@ -71,7 +71,7 @@ impl TileRenderer<'_> {
         self.choose_lights(path, shading, wo);
         for index in &self.lights.chosen {
             let chance = self.lights.chances[*index as usize];
-            let u = path.numbers.pair(dimension::of(path.depth, dimension::FIRST_LIGHT + index));
+            let u = self.first_net(path, dimension::FIRST_LIGHT + index);
             let light = &lights[*index as usize];
             let Some(sample) = light.sample(shading.surface.point, u) else { continue };
             if !shading.is_above(sample.direction) {
@@ -109,7 +109,7 @@ impl TileRenderer<'_> {
     fn probe_lights(&mut self, path: Path, shading: &Shading<'_>, wo: Vec3) {
         let lights = &self.world.job.scene.lights;
         let lobe = &shading.glossy.lobe;
-        let u = path.numbers.pair(dimension::of(path.depth, dimension::PROBE));
+        let u = self.first_net(path, dimension::PROBE);
         let Some(wi) = lobe.sample(wo, u) else { return };
         let direction = shading.frame.world_from_local(wi);
         let pdf = lobe.pdf(wo, wi);
@@ -153,7 +153,7 @@ impl TileRenderer<'_> {
             return 0.0;
         }
         let choice = path.numbers.pair(dimension::of(path.depth, dimension::EMITTER_CHOICE));
-        let u = path.numbers.pair(dimension::of(path.depth, dimension::EMITTER));
+        let u = self.first_net(path, dimension::EMITTER);
         let weights = (&*self.emitter_weights, total);
         let sample = world.emission.sample(&world.job.scene, from, weights, choice, u);
         let Some((sample, pdf)) = sample.and_then(|sample| Some((sample, sample.pdf?))) else {
@@ -210,7 +210,7 @@ mod tests {
             &[0.1, 100.0, 0.2, 90.0, 0.3, 0.0, 0.7],
             &[0.1, 0.7, 0.3],
             &[0.0, 0.1, 0.0, 0.7, 0.0, 0.3, 0.0],
-            &[1e-7, 0.3, 1e30, 0.2, 1e-20, 5.0],
+            &[1e-7, 0.3, 1e6, 0.2, 1e-10, 5.0],
             &[0.1; 9],
             &[0.0; 5],
         ];
