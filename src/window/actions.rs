@@ -128,7 +128,7 @@ impl App {
 
     /// Shows the box that renders a picture, where it is wanted, and does what is chosen in it.
     pub(super) fn export_box(&mut self, ctx: &egui::Context) {
-        if !self.interface.export_shown {
+        if !self.interface.export_shown || self.interface.start_shown {
             return;
         }
         let facts = ExportFacts {

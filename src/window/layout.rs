@@ -254,6 +254,10 @@ fn tree_lines(tree: Option<&TreeStatistics>) -> Vec<(&'static str, String)> {
     vec![
         ("Built in", format!("{:.0} ms", tree.build_secs * 1e3)),
         ("Nodes", tree.n_nodes.to_string()),
-        ("Memory", format!("{:.1} MB", tree.n_bytes as f64 / 1e6)),
+        ("Memory", bytes_text(tree.n_bytes as f64)),
     ]
+}
+
+fn bytes_text(bytes: f64) -> String {
+    if bytes < 1e6 { format!("{:.0} kB", bytes / 1e3) } else { format!("{:.1} MB", bytes / 1e6) }
 }
