@@ -9,9 +9,13 @@ mod cli;
 #[cfg(test)]
 mod common;
 #[cfg(test)]
+mod corpus;
+#[cfg(test)]
 mod density;
 #[cfg(test)]
 mod floors;
+#[cfg(test)]
+mod golden;
 #[cfg(test)]
 mod hostile;
 #[cfg(test)]
