@@ -70,6 +70,8 @@ struct Path {
 struct Scattered {
     from: Vec3,
     normal: Vec3,
+    /// Index of the object that it is on.
+    object: u32,
     /// Density of the ray per solid angle, with the chance that the path scattered at all.
     pdf: f32,
     /// Sum of the weights of all emitters as seen from there.
@@ -216,7 +218,7 @@ impl<'a> TileRenderer<'a> {
         let emission = shading.material.emission;
         if emission != Rgb::ZERO {
             let share = path.scattered.map_or(1.0, |last| {
-                let from = (last.from, last.normal, last.total);
+                let from = (last.from, last.normal, last.object, last.total);
                 let met = (hit, &shading.surface, emission);
                 power(last.pdf, world.emission.pdf(from, direction, met))
             });
@@ -290,7 +292,8 @@ impl<'a> TileRenderer<'a> {
         } else {
             self.scatter(path, shading).map(|(wi, value, pdf)| {
                 let (from, normal) = (shading.surface.point, shading.frame.z);
-                let last = Scattered { from, normal, pdf: scattering * pdf, total: emitters };
+                let (object, pdf) = (shading.object, scattering * pdf);
+                let last = Scattered { from, normal, object, pdf, total: emitters };
                 (wi, value, Some(last), weights[2])
             })
         };

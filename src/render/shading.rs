@@ -15,6 +15,8 @@ use crate::scene::texture::Lookup;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shading<'a> {
     pub(super) surface: Surface,
+    /// Index of its object.
+    pub(super) object: u32,
     pub(super) material: &'a Material,
     /// Unit geometric normal on the viewer's side.
     pub(super) normal: Vec3,
@@ -74,7 +76,7 @@ impl<'a> Shading<'a> {
             specular: material.specular,
             lobe: material.lobe,
         };
-        Self { surface, material, normal, frame, is_outside, wo, glossy }
+        Self { surface, object: hit.id.object, material, normal, frame, is_outside, wo, glossy }
     }
 
     /// Whether a direction is above both the geometric surface and the shading normal's plane.

@@ -279,8 +279,8 @@ fn in_world(frame: &Frame, v: DVec3) -> DVec3 {
 }
 
 /// From this distance on, in squared half diagonals or radii, light is sampled by area: distance and
-/// cosine change little over it, and the way there is short.
-const FAR2: f64 = 16.0;
+/// cosine hardly change over it.
+const FAR2: f64 = 100.0;
 
 /// A rectangle of these half extents from a point before it; `None` where it is sampled by area.
 fn spherical_rectangle(half: [f32; 2], seen: DVec3) -> Option<SphericalRectangle> {

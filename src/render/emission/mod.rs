@@ -82,10 +82,16 @@ impl Emission {
     }
 
     /// Sum of what all sources may bring to a surface, and each of them in `weights`, the sky last.
-    /// Depends on nothing but the point and the normal.
-    pub(super) fn weigh(&self, from: Vec3, normal: Vec3, weights: &mut Vec<f32>) -> f32 {
+    /// Depends on nothing but the point, the normal and the object that it is on.
+    pub(super) fn weigh(
+        &self,
+        from: Vec3,
+        normal: Vec3,
+        object: u32,
+        weights: &mut Vec<f32>,
+    ) -> f32 {
         weights.clear();
-        weights.extend(self.sources.iter().map(|source| source.weight(from, normal)));
+        weights.extend(self.sources.iter().map(|source| source.weight(from, normal, object)));
         weights.extend(self.sky.as_ref().map(sky_weight));
         weights.iter().sum()
     }
@@ -129,13 +135,13 @@ impl Emission {
     /// `direction` meets: a surface of that emission, where the weights added up to `total`.
     pub(super) fn pdf(
         &self,
-        (from, normal, total): (Vec3, Vec3, f32),
+        (from, normal, object, total): (Vec3, Vec3, u32, f32),
         direction: Vec3,
         (hit, surface, emission): (Hit, &Surface, Rgb),
     ) -> f32 {
         let source = self.source_of.get(hit.id.object as usize).copied().flatten();
         let Some(source) = source.map(|id| &self.sources[id as usize]) else { return 0.0 };
-        let weight = source.weight(from, normal);
+        let weight = source.weight(from, normal, object);
         if !(weight > 0.0 && total > 0.0) {
             return 0.0;
         }
@@ -160,7 +166,12 @@ impl Emission {
 
 impl Source {
     /// About the irradiance that it brings; 0 only where it brings nothing, or is not looked for.
-    fn weight(&self, from: Vec3, normal: Vec3) -> f32 {
+    fn weight(&self, from: Vec3, normal: Vec3, object: u32) -> f32 {
+        // A solid is convex: from outside it does not see itself, and from within it is not looked
+        // for. On its surface rounding could not tell which.
+        if object == self.object && matches!(self.shape, SourceShape::Solid(..)) {
+            return 0.0;
+        }
         let way = self.center - from;
         let (distance, radius) = (way.length(), self.radius);
         let cos = if distance > radius {

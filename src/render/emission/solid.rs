@@ -93,6 +93,9 @@ impl Solid {
         primitive: u32,
         normal: Vec3,
     ) -> f32 {
+        if normal.dot(direction) >= 0.0 {
+            return 0.0;
+        }
         match self {
             Self::Box(faces) => {
                 let weights = faces.each_ref().map(|face| face.weight(from));

@@ -91,14 +91,14 @@ fn assert_distributed(scene: &Scene, from: Vec3, normal: Vec3, what: &str) {
     let instances = scene.objects.iter().map(|object| object.instance.clone()).collect();
     let geometry = Geometry::new(instances, AcceleratorKind::WideBvh);
     let mut weights = Vec::new();
-    let total = emission.weigh(from, normal, &mut weights);
+    let total = emission.weigh(from, normal, u32::MAX, &mut weights);
     assert!(total > 0.0, "{what}: nothing is looked for");
     let density = |direction: Vec3, hit: Option<Hit>| match hit {
         Some(hit) => {
             let surface = geometry.surface(&Ray::new(from, direction), hit);
             let object = &scene.objects[hit.id.object as usize];
             let radiance = scene.materials[object.material(surface.slot) as usize].emission;
-            emission.pdf((from, normal, total), direction, (hit, &surface, radiance))
+            emission.pdf((from, normal, u32::MAX, total), direction, (hit, &surface, radiance))
         }
         None => emission.sky_pdf(total, direction),
     };
@@ -242,7 +242,10 @@ fn what_scattered_rays_find_as_well_is_left_to_them() {
         );
         let emission = Emission::new(&scene);
         let mut weights = Vec::new();
-        assert_eq!(emission.weigh(Vec3::ZERO, Vec3::Y, &mut weights), 0.0, "{weights:?}");
-        assert!(emission.weigh(Vec3::X * 5.0, Vec3::NEG_X, &mut weights) > 0.0, "from outside");
+        assert_eq!(emission.weigh(Vec3::ZERO, Vec3::Y, u32::MAX, &mut weights), 0.0, "{weights:?}");
+        assert!(
+            emission.weigh(Vec3::X * 5.0, Vec3::NEG_X, u32::MAX, &mut weights) > 0.0,
+            "from outside"
+        );
     }
 }

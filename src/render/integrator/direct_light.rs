@@ -47,10 +47,11 @@ impl LightChoice {
         self.chosen.clear();
         let mut level = u;
         for (index, chance) in self.chances.iter_mut().enumerate() {
-            *chance = if *chance >= limit && *chance > 0.0 { 1.0 } else { *chance / limit };
-            if !(*chance > 0.0) {
-                *chance = 0.0;
-            }
+            *chance = match *chance {
+                w if w <= 0.0 => 0.0,
+                w if w >= limit => 1.0,
+                w => w / limit,
+            };
             level += *chance;
             if level >= 1.0 {
                 level -= 1.0;
@@ -148,7 +149,8 @@ impl TileRenderer<'_> {
             return 0.0;
         }
         let (from, normal) = (shading.surface.point, shading.frame.z);
-        let total = world.emission.weigh(from, normal, &mut self.emitter_weights);
+        let object = shading.object;
+        let total = world.emission.weigh(from, normal, object, &mut self.emitter_weights);
         if !(total > 0.0 && total.is_finite()) {
             return 0.0;
         }
