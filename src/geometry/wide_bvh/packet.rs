@@ -18,6 +18,8 @@ use crate::math::RayBatch;
 const LANES: usize = 16;
 /// Groups of a packet.
 const GROUPS: usize = 4;
+/// Fewer rays are not worth a packet.
+const FEWEST: usize = 6;
 /// Seven children a level may wait; the builder keeps the tree below 22 levels.
 const STACK: usize = 160;
 
@@ -46,34 +48,33 @@ pub(super) fn blocked<I: Isa>(
 /// Traces all rays of a batch, together where they go together.
 #[inline(always)]
 fn trace<I: Isa, T: Take>(bvh: &WideBvh, rays: &RayBatch, fleet: &mut Fleet, hits: &mut T) {
-    let (spread_of_packet, spread_of_group) = spreads(bvh.blocks.len());
+    let spread = spread(bvh.blocks.len());
     let mut packet = Packet::<I>::idle();
-    // Rays before this one are done, from here to the packet at hand they wait for the stream.
-    let mut waiting = 0;
+    fleet.waiting.clear();
     let mut first = 0;
+    // Before this one, rays are not asked again whether a whole packet goes together.
+    let mut parted = 0;
     while first < rays.len() {
         let mut n = (LANES * GROUPS).min(rays.len() - first);
-        let mut is_together = go_together::<I>(rays, first, n, spread_of_packet);
-        if !is_together {
-            n = LANES.min(n);
-            is_together = go_together::<I>(rays, first, n, spread_of_group);
+        if first < parted || !go_together::<I>(rays, first, n, 2.0 * spread) {
+            parted = parted.max(first + n);
+            n = n_alike::<I>(rays, first, LANES.min(n), spread);
         }
-        if is_together && n >= LANES / 2 {
-            stream::trace::<I, T>(bvh, rays, waiting, first - waiting, fleet, hits);
+        if n >= FEWEST {
             packet.start(bvh, rays, first, n, hits);
             packet.walk(bvh, hits);
-            waiting = first + n;
+        } else {
+            fleet.waiting.extend(first as u32..(first + n) as u32);
         }
         first += n;
     }
-    stream::trace::<I, T>(bvh, rays, waiting, rays.len() - waiting, fleet, hits);
+    stream::trace::<I, T>(bvh, rays, fleet, hits);
 }
 
-/// How far apart the directions of a packet and of a group may be: the finer the mesh, the sooner
-/// rays part.
-fn spreads(n_blocks: usize) -> (f32, f32) {
-    let group = (25.0 / (n_blocks as f32).sqrt()).clamp(0.1, 1.0);
-    (0.5 * group, group)
+/// How far apart directions of rays that go together may be, in units of the largest component:
+/// the finer the mesh, the sooner rays part. Found by trial.
+fn spread(n_blocks: usize) -> f32 {
+    (152.0 / (n_blocks as f32).powf(0.75)).clamp(0.05, 0.7)
 }
 
 /// Whether directions are no farther apart than `spread` along each axis, in units of the largest
@@ -95,6 +96,26 @@ fn go_together<I: Isa>(rays: &RayBatch, first: usize, n: usize, spread: f32) -> 
         widest = widest.max(high - low);
     }
     widest <= spread * largest
+}
+
+/// How many of the next rays have directions no farther than `spread` from the first along each
+/// axis, in units of its largest component.
+#[inline(always)]
+fn n_alike<I: Isa>(rays: &RayBatch, first: usize, n: usize, spread: f32) -> usize {
+    let direction = rays.ray(first).direction;
+    let last = rays.ray(first + n.min(FEWEST) - 1).direction;
+    if (last - direction).abs().max_element() > spread * direction.abs().max_element() {
+        return 1;
+    }
+    let reach = I::F16::splat(spread * direction.abs().max_element());
+    let zero = I::F16::splat(0.0);
+    let mut alike = I::F16::ALL;
+    for axis in 0..3 {
+        let these = lanes::<I::F16>(&rays.direction[axis], first, n);
+        let apart = these.sub(I::F16::splat(direction[axis]));
+        alike &= apart.max(zero.sub(apart)).le(reach);
+    }
+    (alike.trailing_ones() as usize).clamp(1, n)
 }
 
 /// Sixteen rays. Lanes without a ray, or whose ray is done, end below 0.
