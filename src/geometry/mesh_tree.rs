@@ -10,7 +10,7 @@ use crate::geometry::kd_tree::{self, Item, KdTree, Split, Walk};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::triangle::ShearedRay;
 use crate::geometry::wide_bvh::WideBvh;
-use crate::geometry::{AcceleratorKind, Nearest};
+use crate::geometry::{AcceleratorKind, Nearest, TraversalCost};
 use crate::math::{Aabb, Ray, RayBatch};
 
 /// A mesh with the trees that have been asked for; each is built once, on first use.
@@ -100,6 +100,41 @@ impl MeshTree {
             }
             nearest.t()
         });
+    }
+
+    /// [`MeshTree::intersect`] that adds up what it takes.
+    pub(super) fn intersect_counted(
+        &self,
+        ray: &Ray,
+        object: u32,
+        nearest: &mut Nearest,
+        cost: &mut TraversalCost,
+    ) {
+        let sheared = ShearedRay::new(ray);
+        let mut n_triangles = 0;
+        let mut test = |triangles: &[Triangle]| {
+            n_triangles += triangles.len() as u32;
+            for triangle in triangles {
+                if let Some(t) = sheared.intersect(triangle.corners) {
+                    nearest.offer(t, object, triangle.id);
+                }
+            }
+            nearest.t()
+        };
+        match &self.structure {
+            Structure::WideBvh(bvh) => bvh.intersect_counted(ray, object, nearest, cost),
+            Structure::KdTree(tree, triangles) => {
+                let clipped = Ray { t_max: test(&[]), ..*ray };
+                if let Some(walk) = Walk::new(&clipped, &tree.bounds) {
+                    let enter = || cost.n_nodes += 1;
+                    tree.walk_counting(&walk, enter, |range| test(&triangles[range]));
+                }
+            }
+            Structure::List(triangles) => {
+                test(triangles);
+            }
+        }
+        cost.n_primitives += n_triangles;
     }
 
     /// Whether anything but the ray's source lies between its ends.

@@ -4,6 +4,7 @@
 //! both drive it. A job determines its pixels to the last bit, whatever the threads, the
 //! accelerator and the grouping of passes.
 
+pub mod features;
 pub mod film;
 mod integrator;
 pub mod job;
@@ -18,6 +19,7 @@ use rayon::prelude::*;
 
 use crate::render::integrator::TileRenderer;
 
+pub use features::{Feature, PixelMap, Seen};
 pub use film::Film;
 pub use job::{RenderJob, RenderSettings};
 pub use world::{Pick, World};

@@ -5,8 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use crate::render::features::same_first_hits;
 use crate::render::{Film, PassStatistics, RenderJob, plan};
-use crate::session::{Frame, Goal, Phase, Renderer, Shared, lock};
+use crate::session::{Frame, Goal, Maps, Phase, Renderer, Shared, Wanted, lock};
 use crate::threads;
 
 /// A preview is made as fine as fits this.
@@ -19,6 +20,8 @@ const PASS_SECS: f64 = 0.25;
 const PUBLISH_INTERVAL: Duration = Duration::from_millis(33);
 /// Samples a second before anything has been measured.
 const FIRST_GUESS_RATE: f64 = 4e5;
+/// First hits a second before anything has been measured.
+const FIRST_GUESS_MAP_RATE: f64 = 2e6;
 /// With fewer samples the estimate of the noise is not to be trusted.
 const LEAST_FOR_NOISE: u32 = 8;
 
@@ -28,6 +31,9 @@ struct Work<W> {
     job: RenderJob,
     world: Arc<W>,
     film: Film,
+    maps: Maps,
+    /// Whether maps are given up: they do not fit into memory.
+    has_no_maps: bool,
     n_invalid: u64,
     /// Seconds spent in passes.
     seconds: f64,
@@ -43,6 +49,8 @@ struct Driver<'a, R: Renderer> {
     world: &'a Mutex<Option<Arc<R::World>>>,
     /// Samples a second, as last measured.
     rate: f64,
+    /// First hits a second, as last measured.
+    map_rate: f64,
     rays_per_second: f64,
     sequence: u64,
 }
@@ -50,6 +58,7 @@ struct Driver<'a, R: Renderer> {
 enum Next {
     Close,
     Begin(u64, RenderJob),
+    Survey,
     GoOn,
 }
 
@@ -63,6 +72,7 @@ pub(super) fn run<R: Renderer>(
         renderer,
         world,
         rate: FIRST_GUESS_RATE,
+        map_rate: FIRST_GUESS_MAP_RATE,
         rays_per_second: 0.0,
         sequence: 0,
     };
@@ -72,9 +82,17 @@ pub(super) fn run<R: Renderer>(
             Next::Close => return,
             Next::Begin(generation, job) => {
                 // The old film's memory goes before the new one's is taken.
-                drop(work.take());
-                let begun = catch_unwind(AssertUnwindSafe(|| driver.begin(generation, job)));
+                let maps = work.take().filter(|old| same_first_hits(&old.job, &job));
+                let maps = maps.map_or_else(Maps::default, |old| old.maps);
+                let begun = catch_unwind(AssertUnwindSafe(|| driver.begin(generation, job, maps)));
                 work = driver.contained(begun).flatten();
+            }
+            Next::Survey => {
+                let Some(current) = &mut work else { continue };
+                let surveyed = catch_unwind(AssertUnwindSafe(|| driver.finish_maps(current)));
+                if driver.contained(surveyed).is_none() {
+                    work = None;
+                }
             }
             Next::GoOn => {
                 let Some(current) = &mut work else { continue };
@@ -100,8 +118,13 @@ impl<R: Renderer> Driver<'_, R> {
                 self.shared.stop_refining.store(false, Ordering::Relaxed);
                 return Next::Begin(orders.generation, job);
             }
+            let wanted = orders.wanted;
             let phase = match work.as_deref() {
                 None => None,
+                Some(work) if work.unfinished(wanted) != Wanted::NOTHING => {
+                    self.shared.stop_refining.store(false, Ordering::Relaxed);
+                    return Next::Survey;
+                }
                 Some(work) if is_reached(&orders.goal, work) => Some(Phase::Done),
                 Some(work) if orders.is_paused && work.film.n_samples() > 0 => Some(Phase::Paused),
                 Some(_) => {
@@ -118,6 +141,7 @@ impl<R: Renderer> Driver<'_, R> {
             let is_still_idle = orders.mailbox.is_none()
                 && !orders.is_closing
                 && orders.goal == goal
+                && orders.wanted == wanted
                 && work.as_deref().is_none_or(|work| {
                     is_reached(&orders.goal, work)
                         || (orders.is_paused && work.film.n_samples() > 0)
@@ -165,7 +189,7 @@ impl<R: Renderer> Driver<'_, R> {
     }
 
     /// Builds the world of a job and shows its previews.
-    fn begin(&mut self, generation: u64, job: RenderJob) -> Option<Work<R::World>> {
+    fn begin(&mut self, generation: u64, job: RenderJob, maps: Maps) -> Option<Work<R::World>> {
         let goal = self.shared.orders().goal;
         self.shared.update_status(|status| {
             status.phase = Phase::Building;
@@ -196,6 +220,8 @@ impl<R: Renderer> Driver<'_, R> {
             job,
             world,
             film,
+            maps,
+            has_no_maps: false,
             n_invalid: 0,
             seconds: 0.0,
             published_samples: 0,
@@ -209,6 +235,11 @@ impl<R: Renderer> Driver<'_, R> {
     /// which give way to a newer job.
     fn preview(&mut self, work: &mut Work<R::World>) {
         let n_pixels = u64::from(work.job.width) * u64::from(work.job.height);
+        let wanted = work.maps.absent(self.shared.orders().wanted);
+        if wanted != Wanted::NOTHING {
+            let scale = plan::preview_scale(n_pixels, self.map_rate, PREVIEW_SECS);
+            self.survey(work, scale, wanted, &self.shared.stop_all);
+        }
         let mut scale = plan::preview_scale(n_pixels, self.rate, PREVIEW_SECS);
         let mut stop = &self.shared.stop_all;
         if scale == 1 {
@@ -237,6 +268,49 @@ impl<R: Renderer> Driver<'_, R> {
         let frame = self.frame(work, scale, &film);
         self.publish(work, frame);
         true
+    }
+
+    /// The wanted maps in full size, shown with the picture that is there.
+    fn finish_maps(&mut self, work: &mut Work<R::World>) {
+        let wanted = work.unfinished(self.shared.orders().wanted);
+        self.survey(work, 1, wanted, &self.shared.stop_refining);
+        let shown = lock(&self.shared.slot).clone();
+        let Some(shown) = shown.filter(|frame| frame.generation == work.generation) else { return };
+        self.sequence += 1;
+        let (sequence, maps) = (self.sequence, work.maps.clone());
+        self.publish(work, Frame { sequence, maps, ..Frame::clone(&shown) });
+    }
+
+    /// Makes maps of a picture smaller by `scale`.
+    fn survey(
+        &mut self,
+        work: &mut Work<R::World>,
+        scale: u32,
+        wanted: Wanted,
+        stop: &AtomicBool,
+    ) {
+        let coarse = (1 < scale).then(|| self.renderer.coarse(&work.world, scale));
+        let world = coarse.as_ref().unwrap_or(&*work.world);
+        let start = Instant::now();
+        let mut n_made = 0.0;
+        if wanted.features
+            && let Ok(map) = self.renderer.features(world, stop)
+        {
+            n_made += map.pixels.len() as f64;
+            work.maps.features = Some(Arc::new(map));
+        }
+        if wanted.costs
+            && let Ok(map) = self.renderer.costs(world, stop)
+        {
+            n_made += map.pixels.len() as f64;
+            work.maps.costs = Some(Arc::new(map));
+        }
+        if n_made >= 256.0 {
+            let measured = n_made / start.elapsed().as_secs_f64().max(1e-6);
+            self.map_rate = measured.max(0.5 * (self.map_rate + measured));
+        }
+        let was_stopped = stop.load(Ordering::Relaxed);
+        work.has_no_maps = n_made == 0.0 && !was_stopped;
     }
 
     /// One pass at full size.
@@ -295,6 +369,7 @@ impl<R: Renderer> Driver<'_, R> {
             picture: film.picture(),
             samples: film.n_samples(),
             noise_percent: film.noise_percent(),
+            maps: work.maps.clone(),
         }
     }
 
@@ -307,6 +382,13 @@ impl<R: Renderer> Driver<'_, R> {
         drop(older);
         work.last_publish = Instant::now();
         self.shared.wake();
+    }
+}
+
+impl<W> Work<W> {
+    /// The maps that are still to be made in full size.
+    fn unfinished(&self, wanted: Wanted) -> Wanted {
+        if self.has_no_maps { Wanted::NOTHING } else { self.maps.unfinished(wanted, &self.job) }
     }
 }
 

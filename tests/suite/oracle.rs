@@ -3,3 +3,4 @@
 mod closed;
 mod invariance;
 mod rays;
+mod work;

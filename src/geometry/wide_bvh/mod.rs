@@ -12,9 +12,9 @@ mod single;
 
 use glam::Vec3;
 
-use crate::geometry::Nearest;
 use crate::geometry::lanes::Portable;
 use crate::geometry::mesh::Mesh;
+use crate::geometry::{Nearest, TraversalCost};
 use crate::math::{Aabb, Ray, RayBatch};
 
 /// Children of a node.
@@ -140,6 +140,17 @@ impl WideBvh {
     /// Takes the nearest hit of one ray in object space into `nearest`.
     pub(super) fn intersect(&self, ray: &Ray, object: u32, nearest: &mut Nearest) {
         dispatch::intersect(self, ray, object, nearest);
+    }
+
+    /// [`WideBvh::intersect`] that adds up what it takes, the same on every machine.
+    pub(super) fn intersect_counted(
+        &self,
+        ray: &Ray,
+        object: u32,
+        nearest: &mut Nearest,
+        cost: &mut TraversalCost,
+    ) {
+        single::nearest_counted(self, ray, object, nearest, cost);
     }
 
     /// Whether anything but the ray's source lies between its ends.

@@ -1,9 +1,9 @@
 //! One ray through the tree: eight boxes at once, then four triangles at once.
 
-use crate::geometry::Nearest;
-use crate::geometry::lanes::{Isa, Lanes};
+use crate::geometry::lanes::{Isa, Lanes, Portable};
 use crate::geometry::triangle::{Axes, CERTAIN, exact};
-use crate::geometry::wide_bvh::{Block, BoxRay, LEAF, Node, WIDTH, WideBvh};
+use crate::geometry::wide_bvh::{BLOCK, Block, BoxRay, LEAF, Node, WIDTH, WideBvh};
+use crate::geometry::{Nearest, TraversalCost};
 use crate::math::Ray;
 
 /// Seven children a level may wait, and the builder keeps the tree below 22 levels: 12 by cost, then
@@ -13,6 +13,10 @@ const STACK: usize = 160;
 /// What is done with the blocks that a ray may touch. A trait rather than a closure: its method is
 /// inlined for certain, into code compiled for the registers that it uses.
 trait Visit<I: Isa> {
+    /// Told of every node that the ray comes to.
+    #[inline(always)]
+    fn enter(&mut self) {}
+
     /// Gives the parameter up to which the ray is still of interest, below 0 to stop.
     fn visit(&mut self, block: &Block, limit: f32) -> f32;
 }
@@ -22,6 +26,11 @@ struct TakeNearest<'a> {
     axes: Axes,
     object: u32,
     nearest: &'a mut Nearest,
+}
+
+struct Counting<'a> {
+    take: TakeNearest<'a>,
+    cost: &'a mut TraversalCost,
 }
 
 struct FindAny<'a> {
@@ -37,6 +46,20 @@ pub(super) fn nearest<I: Isa>(bvh: &WideBvh, ray: &Ray, object: u32, nearest: &m
     let limit = nearest.t();
     let axes = Axes::new(ray.direction);
     walk::<I, _>(bvh, ray, limit, &mut TakeNearest { ray, axes, object, nearest });
+}
+
+/// The nearest hit, and what it took, in the registers that every machine has.
+pub(super) fn nearest_counted(
+    bvh: &WideBvh,
+    ray: &Ray,
+    object: u32,
+    nearest: &mut Nearest,
+    cost: &mut TraversalCost,
+) {
+    let limit = nearest.t();
+    let axes = Axes::new(ray.direction);
+    let take = TakeNearest { ray, axes, object, nearest };
+    walk::<Portable, _>(bvh, ray, limit, &mut Counting { take, cost });
 }
 
 /// Whether there is any hit.
@@ -65,6 +88,17 @@ impl<I: Isa> Visit<I> for TakeNearest<'_> {
             }
         }
         self.nearest.t()
+    }
+}
+
+impl<I: Isa> Visit<I> for Counting<'_> {
+    fn enter(&mut self) {
+        self.cost.n_nodes += 1;
+    }
+
+    fn visit(&mut self, block: &Block, limit: f32) -> f32 {
+        self.cost.n_primitives += BLOCK as u32;
+        Visit::<I>::visit(&mut self.take, block, limit)
     }
 }
 
@@ -114,6 +148,7 @@ fn walk<I: Isa, V: Visit<I>>(bvh: &WideBvh, ray: &Ray, mut limit: f32, visitor: 
     let mut current = bvh.root;
     loop {
         while current & LEAF == 0 {
+            visitor.enter();
             let node: &Node = &bvh.nodes[current as usize];
             let (mut enter, mut leave) = (zero, I::F8::splat(limit));
             for axis in 0..3 {
