@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use crate::render::integrator::TileRenderer;
 
 pub use features::{Feature, PixelMap, Seen};
-pub use film::Film;
+pub use film::{Film, Sampling};
 pub use job::{RenderJob, RenderSettings};
 pub use world::{Pick, World};
 

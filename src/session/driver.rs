@@ -83,7 +83,8 @@ pub(super) fn run<R: Renderer>(
             Next::Begin(generation, job) => {
                 // The old film's memory goes before the new one's is taken.
                 let maps = work.take().filter(|old| same_first_hits(&old.job, &job));
-                let maps = maps.map_or_else(Maps::default, |old| old.maps);
+                let kept = |old: Work<R::World>| Maps { sampling: None, ..old.maps };
+                let maps = maps.map_or_else(Maps::default, kept);
                 let begun = catch_unwind(AssertUnwindSafe(|| driver.begin(generation, job, maps)));
                 work = driver.contained(begun).flatten();
             }
@@ -276,6 +277,9 @@ impl<R: Renderer> Driver<'_, R> {
         self.survey(work, 1, wanted, &self.shared.stop_refining);
         let shown = lock(&self.shared.slot).clone();
         let Some(shown) = shown.filter(|frame| frame.generation == work.generation) else { return };
+        if wanted.sampling {
+            work.maps.sampling = Some(Arc::new(work.film.sampling()));
+        }
         self.sequence += 1;
         let (sequence, maps) = (self.sequence, work.maps.clone());
         self.publish(work, Frame { sequence, maps, ..Frame::clone(&shown) });
@@ -309,8 +313,8 @@ impl<R: Renderer> Driver<'_, R> {
             let measured = n_made / start.elapsed().as_secs_f64().max(1e-6);
             self.map_rate = measured.max(0.5 * (self.map_rate + measured));
         }
-        let was_stopped = stop.load(Ordering::Relaxed);
-        work.has_no_maps = n_made == 0.0 && !was_stopped;
+        let is_tried = wanted.features || wanted.costs;
+        work.has_no_maps = is_tried && n_made == 0.0 && !stop.load(Ordering::Relaxed);
     }
 
     /// One pass at full size.
@@ -361,6 +365,8 @@ impl<R: Renderer> Driver<'_, R> {
 
     fn frame(&mut self, work: &Work<R::World>, scale: u32, film: &Film) -> Frame {
         self.sequence += 1;
+        let is_wanted = self.shared.orders().wanted.sampling;
+        let sampling = is_wanted.then(|| Arc::new(film.sampling()));
         Frame {
             generation: work.generation,
             sequence: self.sequence,
@@ -369,7 +375,7 @@ impl<R: Renderer> Driver<'_, R> {
             picture: film.picture(),
             samples: film.n_samples(),
             noise_percent: film.noise_percent(),
-            maps: work.maps.clone(),
+            maps: Maps { sampling, ..work.maps.clone() },
         }
     }
 
@@ -377,6 +383,7 @@ impl<R: Renderer> Driver<'_, R> {
         if frame.scale == 1 {
             work.published_samples = frame.samples;
         }
+        work.maps.sampling.clone_from(&frame.maps.sampling);
         let older = lock(&self.shared.slot).replace(Arc::new(frame));
         // Freeing a large picture takes longer than a pointer swap: not under the lock.
         drop(older);

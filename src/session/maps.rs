@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::geometry::TraversalCost;
-use crate::render::{Feature, PixelMap, RenderJob};
+use crate::render::{Feature, PixelMap, RenderJob, Sampling};
 
 /// Which maps somebody looks at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -12,15 +12,19 @@ pub struct Wanted {
     pub features: bool,
     /// What finding them costs.
     pub costs: bool,
+    /// Samples and error.
+    pub sampling: bool,
 }
 
 impl Wanted {
     /// No maps at all.
-    pub const NOTHING: Self = Self { features: false, costs: false };
+    pub const NOTHING: Self = Self { features: false, costs: false, sampling: false };
 
     /// Whether all of `other` is wanted here.
     pub fn covers(self, other: Self) -> bool {
-        (self.features || !other.features) && (self.costs || !other.costs)
+        (self.features || !other.features)
+            && (self.costs || !other.costs)
+            && (self.sampling || !other.sampling)
     }
 }
 
@@ -31,14 +35,17 @@ pub struct Maps {
     pub features: Option<Arc<PixelMap<Feature>>>,
     /// What finding them costs.
     pub costs: Option<Arc<PixelMap<TraversalCost>>>,
+    /// Samples and error of the picture beside it.
+    pub sampling: Option<Arc<PixelMap<Sampling>>>,
 }
 
 impl Maps {
-    /// What of `wanted` is not there at all.
+    /// What of `wanted` a first, coarse map would show.
     pub(super) fn absent(&self, wanted: Wanted) -> Wanted {
         Wanted {
             features: wanted.features && self.features.is_none(),
             costs: wanted.costs && self.costs.is_none(),
+            sampling: false,
         }
     }
 
@@ -47,6 +54,10 @@ impl Maps {
         let size = (job.width, job.height);
         let has_features = self.features.as_ref().is_some_and(|map| (map.width, map.height) == size);
         let has_costs = self.costs.as_ref().is_some_and(|map| (map.width, map.height) == size);
-        Wanted { features: wanted.features && !has_features, costs: wanted.costs && !has_costs }
+        Wanted {
+            features: wanted.features && !has_features,
+            costs: wanted.costs && !has_costs,
+            sampling: wanted.sampling && self.sampling.is_none(),
+        }
     }
 }

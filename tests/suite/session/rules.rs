@@ -432,7 +432,7 @@ fn maps_are_made_when_the_picture_is_done() {
     stage.submit(1, SMALL, 2);
     stage.run_until_phase(&Phase::Done);
     let before = stage.session.latest().unwrap();
-    stage.session.want(Wanted { costs: true, features: true });
+    stage.session.want(Wanted { costs: true, ..FEATURES });
     for expected in [Question::Features { is_coarse: false }, Question::Costs] {
         let call = stage.call();
         assert_eq!(call.question, expected, "asked");
