@@ -147,12 +147,6 @@ pub fn load(
             scene_error(scene_file::file_fault(&opened.text, overrides, section, index, &message))
         }
     })?;
-    if description.render.adaptive {
-        reading.report.push(
-            "render.adaptive: samples are spread evenly; adaptive sampling is not there yet"
-                .to_owned(),
-        );
-    }
     Ok(Loaded {
         source: source.clone(),
         folder: opened.folder.clone(),

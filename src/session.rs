@@ -7,6 +7,7 @@
 //! the goal is reached, or while paused, everything sleeps. No lock is held while rendering or
 //! while waking the caller.
 
+pub mod develop;
 mod driver;
 mod maps;
 mod renderer;
@@ -19,7 +20,7 @@ use std::thread::JoinHandle;
 
 use crate::color::Picture;
 use crate::geometry::TreeStatistics;
-use crate::render::{Pick, RenderJob};
+use crate::render::{Film, Pick, RenderJob};
 use crate::threads;
 
 pub use maps::{Maps, Wanted};
@@ -34,6 +35,20 @@ pub struct Goal {
     pub seconds: Option<f64>,
     /// Noise in percent.
     pub noise_percent: Option<f64>,
+}
+
+impl Goal {
+    /// With fewer samples the estimate of the noise is not to be trusted.
+    const LEAST_FOR_NOISE: u32 = 8;
+
+    /// Whether a film that took so many seconds is finished. Nothing is before its first sample.
+    pub fn is_reached(&self, film: &Film, seconds: f64) -> bool {
+        let n_samples = film.n_samples();
+        let is_clean = n_samples >= Self::LEAST_FOR_NOISE
+            && self.noise_percent.zip(film.noise_percent()).is_some_and(|(goal, now)| now <= goal);
+        let is_late = n_samples > 0 && self.seconds.is_some_and(|limit| seconds >= limit);
+        n_samples >= self.samples || is_clean || is_late
+    }
 }
 
 /// A published picture. Never changes.

@@ -9,20 +9,17 @@ use anyhow::{Context, bail};
 
 use crate::cli::progress::Progress;
 use crate::cli::{Failure, RenderArguments, print_json, warn};
-use crate::color::Picture;
 use crate::geometry::AcceleratorKind;
-use crate::io::output::{
-    OutputFormat, TextChunk, WriteError, encode_exr, encode_hdr, encode_png, replace_file,
-};
+use crate::io::output::{OutputFormat, replace_file};
 use crate::io::printable_path;
 use crate::io::scene_file::Override;
 use crate::io::snapshot;
 use crate::loader::{LoadError, Loaded, Source, load};
-use crate::render::{Film, RenderJob, RenderSettings, World, plan, render_pass};
-use crate::scene::description::ToneMappingDescription;
+use crate::render::{RenderJob, RenderSettings, World};
 use crate::scene::resolve;
+use crate::session::Goal;
+use crate::session::develop::{Developed, develop, encode};
 use crate::threads;
-use crate::tone_mapping::srgb_bytes;
 
 pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     let output = &arguments.output;
@@ -35,14 +32,16 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     check_folder(output)?;
     let loaded = open(&arguments.file, &overrides(arguments))?;
     warn(&loaded.report, arguments.quiet);
-    let goal = loaded.description.render.samples;
+    let samples = loaded.description.render.samples;
     let start = Instant::now();
     let n_threads = arguments.threads.map_or_else(threads::available, |n| n as usize);
     let pool = threads::pool("render", n_threads)?;
-    let mut world = world_of(&loaded, arguments.accelerator, &pool)?;
-    let mut progress = Progress::new(u64::from(goal), arguments.quiet);
-    let limits = Limits { samples: goal, seconds: arguments.time, noise: arguments.noise };
-    let (film, n_invalid) = develop(&mut world, &pool, limits, start, |film| progress.show(film))?;
+    let world = world_of(&loaded, arguments.accelerator, &pool)?;
+    let mut progress = Progress::new(u64::from(samples), arguments.quiet);
+    let goal = Goal { samples, seconds: arguments.time, noise_percent: arguments.noise };
+    let never = AtomicBool::new(false);
+    let Developed { film, n_invalid } =
+        develop(&world, &pool, goal, start, &never, |film| progress.show(film))?;
     progress.finish();
     warn(&not_finite(n_invalid), arguments.quiet);
     let seconds = start.elapsed().as_secs_f64();
@@ -63,14 +62,6 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
         print_json(&summary)?;
     }
     Ok(())
-}
-
-/// When a render ends: at the first of these.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Limits {
-    pub(super) samples: u32,
-    pub(super) seconds: Option<f64>,
-    pub(super) noise: Option<f64>,
 }
 
 /// Loads a file; a wrong `--set` is the command line's fault.
@@ -99,66 +90,10 @@ pub(super) fn world_of(
     Ok(pool.install(|| World::new(job)))
 }
 
-/// Passes until a limit is reached; `after_pass` is shown the film after each. Gives the film, and
-/// how many samples were not finite.
-pub(super) fn develop(
-    world: &mut World,
-    pool: &rayon::ThreadPool,
-    limits: Limits,
-    start: Instant,
-    mut after_pass: impl FnMut(&Film),
-) -> anyhow::Result<(Film, u64)> {
-    /// With fewer samples the estimate of the noise is not to be trusted.
-    const LEAST_FOR_NOISE: u32 = 8;
-    let never = AtomicBool::new(false);
-    let mut film = Film::new(world.job.width, world.job.height)?;
-    let mut n_invalid = 0;
-    while film.n_samples() < limits.samples {
-        let before = film.n_samples();
-        let mut n = plan::pass_samples(before, limits.samples);
-        if let Some(seconds) = limits.seconds {
-            // A long pass that would overrun by far is cut to what fits.
-            let elapsed = start.elapsed().as_secs_f64();
-            let affordable = f64::from(before) * (seconds - elapsed) / elapsed.max(1e-9);
-            n = n.min((affordable as u32).max(1));
-        }
-        match pool.install(|| render_pass(world, &mut film, n, &never)) {
-            Ok(statistics) => n_invalid += statistics.n_invalid,
-            Err(_) => bail!("the render was stopped"),
-        }
-        after_pass(&film);
-        let is_late = limits.seconds.is_some_and(|s| start.elapsed().as_secs_f64() >= s);
-        let is_clean = film.n_samples() >= LEAST_FOR_NOISE
-            && limits.noise.zip(film.noise_percent()).is_some_and(|(goal, now)| now <= goal);
-        if is_late || is_clean {
-            break;
-        }
-    }
-    Ok((film, n_invalid))
-}
-
 /// A warning where any samples were not finite.
 pub(super) fn not_finite(n_invalid: u64) -> Vec<String> {
     let warning = || format!("{n_invalid} samples were not finite and counted as black");
     (n_invalid > 0).then(warning).into_iter().collect()
-}
-
-fn encode(
-    path: &Path,
-    format: OutputFormat,
-    picture: &Picture,
-    tone_mapping: &ToneMappingDescription,
-    texts: &[TextChunk],
-) -> Result<Vec<u8>, WriteError> {
-    let error = |error: &dyn std::fmt::Display| WriteError::new(path, error);
-    match format {
-        OutputFormat::Png => {
-            let srgb = srgb_bytes(picture, tone_mapping);
-            encode_png((picture.width, picture.height), &srgb, texts).map_err(|e| error(&e))
-        }
-        OutputFormat::Exr => encode_exr(picture).map_err(|e| error(&e)),
-        OutputFormat::Hdr => encode_hdr(picture).map_err(|e| error(&e)),
-    }
 }
 
 /// `--set` first, then the options of their own, which win.

@@ -1,17 +1,20 @@
 //! `penumbra verify`: does a snapshot's scene still give its picture?
 
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use anyhow::anyhow;
 
 use crate::cli::progress::Progress;
-use crate::cli::render::{Limits, develop, not_finite, open, world_of};
+use crate::cli::render::{not_finite, open, world_of};
 use crate::cli::{Failure, VerifyArguments, print, warn};
 use crate::geometry::AcceleratorKind;
 use crate::io::files::read_file;
 use crate::io::folder::LARGEST_ASSET;
 use crate::io::snapshot::{SnapshotError, read_pixels};
 use crate::io::{excerpt, printable_path};
+use crate::session::Goal;
+use crate::session::develop::{Developed, develop};
 use crate::threads;
 use crate::tone_mapping::srgb_bytes;
 
@@ -47,11 +50,12 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     };
     let n_threads = arguments.threads.map_or_else(threads::available, |n| n as usize);
     let pool = threads::pool("render", n_threads)?;
-    let mut world = world_of(&loaded, AcceleratorKind::default(), &pool)?;
-    let limits = Limits { samples: record.samples, seconds: None, noise: None };
+    let world = world_of(&loaded, AcceleratorKind::default(), &pool)?;
+    let goal = Goal { samples: record.samples, seconds: None, noise_percent: None };
     let mut progress = Progress::new(u64::from(record.samples), arguments.quiet);
-    let (film, n_invalid) =
-        develop(&mut world, &pool, limits, Instant::now(), |film| progress.show(film))?;
+    let never = AtomicBool::new(false);
+    let Developed { film, n_invalid } =
+        develop(&world, &pool, goal, Instant::now(), &never, |film| progress.show(film))?;
     progress.finish();
     warn(&not_finite(n_invalid), arguments.quiet);
     let rendered = srgb_bytes(&film.picture(), &loaded.description.tone_mapping);

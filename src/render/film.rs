@@ -1,7 +1,13 @@
 //! Where samples are summed: linear, whole passes only.
 
-use crate::color::{Picture, Rgb, luminance};
-use crate::render::noise::NoiseEstimate;
+use rayon::prelude::*;
+
+use crate::color::Picture;
+use crate::render::adaptive::{Allotment, is_decision};
+use crate::render::features::PixelMap;
+use crate::render::job::RenderSettings;
+use crate::render::noise::{ErrorModel, Noise};
+use crate::render::pixel::PixelSums;
 use crate::render::plan::Tile;
 
 /// Sums of all samples of every pixel, row 0 at the top.
@@ -10,8 +16,22 @@ pub struct Film {
     width: u32,
     height: u32,
     n_samples: u32,
-    sums: Vec<[f64; 3]>,
-    noise: NoiseEstimate,
+    pixels: Vec<PixelSums>,
+    /// Where samples do not go evenly: who gets how many until the next power of two.
+    allotment: Option<Allotment>,
+    /// How errors were last told from the sums.
+    model: Option<ErrorModel>,
+    noise: Option<Noise>,
+}
+
+/// What is known of a pixel beside its colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampling {
+    /// Samples so far.
+    pub n_samples: u32,
+    /// 100 x the estimated standard error of its luminance over the mean luminance of the whole
+    /// picture: the noise figure is its root mean square. NaN while there are too few samples.
+    pub error_percent: f32,
 }
 
 /// The film of that size does not fit into memory.
@@ -30,13 +50,12 @@ impl Film {
     /// When memory does not suffice.
     pub fn new(width: u32, height: u32) -> Result<Self, FilmTooLarge> {
         let n_pixels = width as usize * height as usize;
-        let bytes = n_pixels as u64 * (size_of::<[f64; 3]>() + NoiseEstimate::BYTES_A_PIXEL) as u64;
+        let bytes = (n_pixels * size_of::<PixelSums>()) as u64;
         let too_large = FilmTooLarge { width, height, bytes };
-        let mut sums = Vec::new();
-        sums.try_reserve_exact(n_pixels).map_err(|_| too_large)?;
-        sums.resize(n_pixels, [0.0; 3]);
-        let noise = NoiseEstimate::new(n_pixels).ok_or(too_large)?;
-        Ok(Self { width, height, n_samples: 0, sums, noise })
+        let mut pixels = Vec::new();
+        pixels.try_reserve_exact(n_pixels).map_err(|_| too_large)?;
+        pixels.resize(n_pixels, PixelSums::default());
+        Ok(Self { width, height, n_samples: 0, pixels, allotment: None, model: None, noise: None })
     }
 
     /// Width in pixels.
@@ -49,50 +68,84 @@ impl Film {
         self.height
     }
 
-    /// Samples a pixel so far.
+    /// Samples a pixel so far; their mean where samples go where the error is.
     pub fn n_samples(&self) -> u32 {
         self.n_samples
     }
 
+    /// Samples of one pixel.
+    pub fn samples_at(&self, x: u32, y: u32) -> u32 {
+        self.pixels[(y * self.width + x) as usize].n_samples
+    }
+
     /// The mean of a pixel's samples; black without samples.
     pub fn mean(&self, x: u32, y: u32) -> [f32; 3] {
-        let scale = 1.0 / f64::from(self.n_samples.max(1));
-        self.sums[(y * self.width + x) as usize].map(|sum| (sum * scale) as f32)
+        self.pixels[(y * self.width + x) as usize].mean()
     }
 
     /// The means of all pixels.
     pub fn picture(&self) -> Picture {
-        let scale = 1.0 / f64::from(self.n_samples.max(1));
-        let pixels = self.sums.iter().map(|sum| sum.map(|s| (s * scale) as f32)).collect();
+        let pixels = self.pixels.iter().map(PixelSums::mean).collect();
         Picture { width: self.width, height: self.height, pixels }
     }
 
-    /// 100 x the estimated RMSE of linear luminance over its mean; `None` while there are too few
-    /// samples to tell, and for a black picture.
+    /// The estimated error; `None` while there are too few samples to tell, and for a black picture.
+    pub fn noise(&self) -> Option<Noise> {
+        self.noise
+    }
+
+    /// 100 x the estimated RMSE of linear luminance over its mean.
     pub fn noise_percent(&self) -> Option<f64> {
-        self.noise.percent(self.n_samples)
+        self.noise.map(|noise| noise.percent)
     }
 
-    /// The running sums of a tile, row by row: what the next pass starts from.
-    pub(super) fn tile_sums(&self, tile: &Tile) -> Vec<[f64; 3]> {
-        tile.rows().flat_map(|y| self.sums[self.row(tile, y)].iter().copied()).collect()
+    /// What is known of every pixel beside its colour, on the current pool.
+    pub fn sampling(&self) -> PixelMap<Sampling> {
+        let n_samples = |pixel: &PixelSums| f64::from(pixel.n_samples.max(1));
+        let light = self.pixels.iter().map(|pixel| pixel.luminance() / n_samples(pixel));
+        let mean = light.sum::<f64>() / self.pixels.len() as f64;
+        let of_pixel = |pixel: &PixelSums| {
+            let known = self.model.filter(|_| 2 <= pixel.n_samples);
+            let error = known.map_or(f64::NAN, |model| model.variance(pixel).sqrt());
+            let error_percent = (100.0 * error / mean) as f32;
+            Sampling { n_samples: pixel.n_samples, error_percent }
+        };
+        let pixels = self.pixels.par_iter().map(of_pixel).collect();
+        PixelMap { width: self.width, height: self.height, pixels }
     }
 
-    /// Takes the sums of all tiles of a pass of `n_samples`.
-    pub(super) fn commit(&mut self, n_samples: u32, tiles: &[(Tile, Vec<[f64; 3]>)]) {
-        for (tile, sums) in tiles {
-            for (y, row) in tile.rows().zip(sums.chunks_exact(tile.width as usize)) {
+    /// A tile's pixels, row by row: what the next pass starts from, and the samples that each has
+    /// when the mean is `n_samples`.
+    pub(super) fn tile(&self, tile: &Tile, n_samples: u32) -> (Vec<PixelSums>, Vec<u32>) {
+        let places = tile.rows().flat_map(|y| self.row(tile, y));
+        let pixels = places.clone().map(|place| self.pixels[place]).collect();
+        let goal = |place| match &self.allotment {
+            Some(allotment) => allotment.n_samples(place, n_samples),
+            None => n_samples,
+        };
+        (pixels, places.map(goal).collect())
+    }
+
+    /// Takes all tiles of a pass, with which the mean is `n_samples`.
+    pub(super) fn commit(
+        &mut self,
+        n_samples: u32,
+        settings: &RenderSettings,
+        tiles: &[(Tile, Vec<PixelSums>)],
+    ) {
+        for (tile, pixels) in tiles {
+            for (y, row) in tile.rows().zip(pixels.chunks_exact(tile.width as usize)) {
                 let to = self.row(tile, y);
-                self.sums[to].copy_from_slice(row);
+                self.pixels[to].copy_from_slice(row);
             }
         }
-        self.n_samples += n_samples;
-        if self.n_samples.is_power_of_two() {
-            let sums = self
-                .sums
-                .iter()
-                .map(|s| f64::from(luminance(Rgb::new(s[0] as f32, s[1] as f32, s[2] as f32))));
-            self.noise.record(self.n_samples, sums);
+        self.n_samples = n_samples;
+        let model = ErrorModel::new(settings.sampler, &self.pixels);
+        self.noise = model.noise(&self.pixels);
+        self.model = Some(model);
+        if settings.adaptive && is_decision(n_samples) {
+            let width = self.width as usize;
+            self.allotment = Some(Allotment::new(width, n_samples, &self.pixels, &model));
         }
     }
 

@@ -7,6 +7,8 @@
 //! Monte Carlo Methods for Light Transport Simulation", 1997, section 9.2). Rays of the second kind
 //! are shadow rays too, so that lights never hide one another.
 
+use std::ops::Range;
+
 use glam::{Vec2, Vec3};
 
 use crate::brdf::fresnel;
@@ -15,6 +17,7 @@ use crate::geometry::Hit;
 use crate::math::sampler::SampleNumbers;
 use crate::math::{Ray, RayBatch};
 use crate::render::PassStatistics;
+use crate::render::pixel::PixelSums;
 use crate::render::plan::Tile;
 use crate::render::shading::Shading;
 use crate::render::world::World;
@@ -54,9 +57,17 @@ struct Path {
     sees_lights: bool,
 }
 
+/// The samples of one pixel in a block.
+struct Run {
+    /// In the tile, row by row.
+    pixel: usize,
+    slots: Range<usize>,
+}
+
 /// A block of samples on their way, with the memory of its waves.
 pub(super) struct TileRenderer<'a> {
     world: &'a World,
+    runs: Vec<Run>,
     radiance: Vec<Rgb>,
     rays: RayBatch,
     paths: Vec<Path>,
@@ -80,6 +91,7 @@ impl<'a> TileRenderer<'a> {
     pub(super) fn new(world: &'a World) -> Self {
         Self {
             world,
+            runs: Vec::new(),
             radiance: Vec::new(),
             rays: RayBatch::default(),
             paths: Vec::new(),
@@ -90,41 +102,36 @@ impl<'a> TileRenderer<'a> {
         }
     }
 
-    /// Adds samples `first_sample..` to the running sums of a tile's pixels, in sample order.
+    /// Adds samples to a tile's pixels, in sample order, until each has as many as its goal.
     pub(super) fn render(
         &mut self,
         tile: &Tile,
-        first_sample: u32,
-        n_samples: u32,
-        sums: &mut [[f64; 3]],
+        goals: &[u32],
+        pixels: &mut [PixelSums],
     ) -> PassStatistics {
-        let n_at_once = (WAVE_SIZE / sums.len()).max(1) as u32;
         let mut statistics = PassStatistics::default();
-        let mut done = 0;
-        while done < n_samples {
-            let n = n_at_once.min(n_samples - done);
-            self.trace(tile, first_sample + done, n, &mut statistics);
-            for (sum, samples) in sums.iter_mut().zip(self.radiance.chunks_exact(n as usize)) {
-                for sample in samples {
-                    if !sample.is_finite() {
-                        statistics.n_invalid += 1;
-                        continue;
-                    }
-                    for channel in 0..3 {
-                        sum[channel] += f64::from(sample[channel]);
-                    }
+        loop {
+            let is_open = |(pixel, goal): (&PixelSums, &u32)| pixel.n_samples < *goal;
+            let n_open = pixels.iter().zip(goals).filter(|both| is_open(*both)).count();
+            if n_open == 0 {
+                return statistics;
+            }
+            let n_at_once = (WAVE_SIZE / n_open).max(1) as u32;
+            self.start(tile, n_at_once, goals, pixels);
+            self.trace(&mut statistics);
+            for run in &self.runs {
+                let pixel = &mut pixels[run.pixel];
+                for sample in &self.radiance[run.slots.clone()] {
+                    let is_valid = sample.is_finite();
+                    statistics.n_invalid += u64::from(!is_valid);
+                    pixel.add(if is_valid { *sample } else { Rgb::ZERO });
                 }
             }
-            done += n;
         }
-        statistics
     }
 
-    /// Fills `radiance` with `n` samples of every pixel of the tile, pixel by pixel.
-    fn trace(&mut self, tile: &Tile, first_sample: u32, n: u32, statistics: &mut PassStatistics) {
-        self.radiance.clear();
-        self.radiance.resize((tile.width * tile.height * n) as usize, Rgb::ZERO);
-        self.start(tile, first_sample, n);
+    /// Follows the paths of a block, wave by wave, into `radiance`.
+    fn trace(&mut self, statistics: &mut PassStatistics) {
         while !self.rays.is_empty() {
             self.world.geometry.intersect(&self.rays, &mut self.hits);
             statistics.n_rays += self.rays.len() as u64;
@@ -141,14 +148,17 @@ impl<'a> TileRenderer<'a> {
         }
     }
 
-    /// The first wave: one camera ray a sample.
-    fn start(&mut self, tile: &Tile, first_sample: u32, n: u32) {
+    /// The first wave: a camera ray for each of the next samples, up to `n_at_once` a pixel.
+    fn start(&mut self, tile: &Tile, n_at_once: u32, goals: &[u32], pixels: &[PixelSums]) {
         let job = &self.world.job;
         let size = Vec2::new(job.width as f32, job.height as f32);
         self.rays.clear();
         self.paths.clear();
-        for (x, y) in tile.pixels() {
-            for sample in first_sample..first_sample + n {
+        self.runs.clear();
+        for (pixel, (x, y)) in tile.pixels().enumerate() {
+            let first_slot = self.paths.len();
+            let first = pixels[pixel].n_samples;
+            for sample in first..goals[pixel].min(first + n_at_once) {
                 let numbers = job.settings.sampler.numbers(x, y, sample);
                 let [dx, dy] = numbers.pair(dimension::PIXEL);
                 let at = Vec2::new(x as f32 + dx, y as f32 + dy);
@@ -161,7 +171,10 @@ impl<'a> TileRenderer<'a> {
                     sees_lights: true,
                 });
             }
+            self.runs.push(Run { pixel, slots: first_slot..self.paths.len() });
         }
+        self.radiance.clear();
+        self.radiance.resize(self.paths.len(), Rgb::ZERO);
     }
 
     /// What a path's ray meets: adds its light, leaves shadow rays, and goes on.

@@ -27,6 +27,8 @@ pub struct RenderSettings {
     pub integrator: IntegratorKind,
     /// Where the numbers come from, with their seed.
     pub sampler: Sampler,
+    /// Whether samples go where the error is.
+    pub adaptive: bool,
     /// Scattering events after the camera ray.
     pub max_depth: u32,
     /// How rays find what they meet; changes no pixel.
@@ -41,7 +43,8 @@ impl RenderSettings {
             SamplerKind::Sobol => Sampler::Sobol { seed },
             SamplerKind::Random => Sampler::Random { seed },
         };
-        Self { integrator: render.integrator, sampler, max_depth: render.max_depth, accelerator }
+        let RenderDescription { integrator, max_depth, adaptive, .. } = *render;
+        Self { integrator, sampler, adaptive, max_depth, accelerator }
     }
 }
 

@@ -4,11 +4,13 @@
 //! both drive it. A job determines its pixels to the last bit, whatever the threads, the
 //! accelerator and the grouping of passes.
 
+mod adaptive;
 pub mod features;
 pub mod film;
 mod integrator;
 pub mod job;
 mod noise;
+mod pixel;
 pub mod plan;
 mod shading;
 mod world;
@@ -22,6 +24,7 @@ use crate::render::integrator::TileRenderer;
 pub use features::{Feature, PixelMap, Seen};
 pub use film::{Film, Sampling};
 pub use job::{RenderJob, RenderSettings};
+pub use noise::Noise;
 pub use world::{Pick, World};
 
 /// A pass was stopped; the film is as it was before.
@@ -37,19 +40,40 @@ pub struct PassStatistics {
     pub n_invalid: u64,
 }
 
-/// Adds `n_samples` to every pixel of a film of the job's size, on the current pool. `stop` is
-/// looked at before every tile.
+/// Adds `n_samples` to every pixel of a film of the job's size, or as many on the mean where samples
+/// go where the error is, on the current pool. `stop` is looked at before every tile.
+///
+/// Where samples go where the error is, a pass ends wherever they are shared out anew, and the rest is
+/// a pass of its own.
 ///
 /// # Errors
-/// [`Stopped`]; the film is untouched then.
+/// [`Stopped`]; the film is as it was before the pass that was stopped.
 pub fn render_pass(
     world: &World,
     film: &mut Film,
     n_samples: u32,
     stop: &AtomicBool,
 ) -> Result<PassStatistics, Stopped> {
+    let goal = film.n_samples() + n_samples;
+    let mut statistics = PassStatistics::default();
+    while film.n_samples() < goal {
+        let is_adaptive = world.job.settings.adaptive;
+        let end = if is_adaptive { adaptive::next_decision(film.n_samples()) } else { goal };
+        let pass = pass_to(world, film, goal.min(end), stop)?;
+        statistics.n_rays += pass.n_rays;
+        statistics.n_invalid += pass.n_invalid;
+    }
+    Ok(statistics)
+}
+
+/// One pass, after which every pixel has `goal` samples on the mean.
+fn pass_to(
+    world: &World,
+    film: &mut Film,
+    goal: u32,
+    stop: &AtomicBool,
+) -> Result<PassStatistics, Stopped> {
     let tiles = plan::tiles(film.width(), film.height());
-    let first_sample = film.n_samples();
     let (n_rays, n_invalid) = (AtomicU64::new(0), AtomicU64::new(0));
     let finished = {
         let film = &*film;
@@ -61,15 +85,15 @@ pub fn render_pass(
                     if stop.load(Ordering::Relaxed) {
                         return Err(Stopped);
                     }
-                    let mut sums = film.tile_sums(&tile);
-                    let statistics = renderer.render(&tile, first_sample, n_samples, &mut sums);
+                    let (mut pixels, goals) = film.tile(&tile, goal);
+                    let statistics = renderer.render(&tile, &goals, &mut pixels);
                     n_rays.fetch_add(statistics.n_rays, Ordering::Relaxed);
                     n_invalid.fetch_add(statistics.n_invalid, Ordering::Relaxed);
-                    Ok((tile, sums))
+                    Ok((tile, pixels))
                 },
             )
             .collect::<Result<Vec<_>, Stopped>>()?
     };
-    film.commit(n_samples, &finished);
+    film.commit(goal, &world.job.settings, &finished);
     Ok(PassStatistics { n_rays: n_rays.into_inner(), n_invalid: n_invalid.into_inner() })
 }

@@ -1,71 +1,153 @@
 //! How far the picture is from the truth, told from the picture alone.
 //!
-//! Let V(n) be the variance of the mean of the first n samples of a pixel, for n a power of two.
-//! The two halves of those samples are nets of their own with equal variance V(n/2), but not
-//! independent: scrambled Sobol points avoid in the second half what the first half covered. The
-//! mean squared difference D of the two half means is 4 (V(n/2) - V(n)), whatever the correlation.
-//! With V(2n) = r V(n) this gives V(n) = D r / (4 (1 - r)): the familiar D / 4 for independent
-//! samples, r = 1/2. The ratio r is read off the growth of D itself, pooled over all pixels.
+//! *Independent samples*: the variance of a pixel's mean is the variance of its samples over their
+//! number.
+//!
+//! *Sobol points* are better than that. Let V(n) be the variance of the mean of the first n samples,
+//! n a power of two. The two halves of those samples are nets of their own with equal variance
+//! V(n/2), but not independent: scrambled Sobol points avoid in the second half what the first half
+//! covered. The mean squared difference D(n) of the two half means is 4 (V(n/2) - V(n)), whatever
+//! the correlation, so V(n) is a quarter of the sum of all D to come: D r / (4 (1 - r)) if D falls
+//! by r whenever samples double. The ratio is read off the halves and the quarters, pooled over all
+//! pixels, and drawn towards that of a discontinuity between two and four dimensions, because what
+//! falls fast at first (smooth parts) leaves behind what falls slowly (edges).
 
-/// Differences between halves of the samples, at every power of two.
-#[derive(Clone, Debug)]
-pub(super) struct NoiseEstimate {
-    /// Sum of luminance of every pixel at the last power of two.
-    half_sums: Vec<f64>,
-    /// Mean over pixels of the squared difference of half means, at 2, 4, 8, … samples.
-    differences: Vec<f64>,
-    mean_luminance: f64,
+use rayon::prelude::*;
+
+use crate::math::sampler::Sampler;
+use crate::render::pixel::PixelSums;
+
+/// The error of a picture, as estimated from it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// 100 x the root mean squared error of linear luminance over its mean.
+    pub percent: f64,
+    /// Standard error of `percent`, as a share of it.
+    pub uncertainty: f64,
+    /// By how much the squared error falls whenever samples double.
+    pub ratio: f64,
 }
 
-impl NoiseEstimate {
-    pub(super) const BYTES_A_PIXEL: usize = size_of::<f64>();
+impl Noise {
+    /// How many times the samples so far it takes to come down to `percent`.
+    pub fn samples_to(&self, percent: f64) -> f64 {
+        libm::pow(self.percent / percent, -2.0 / libm::log2(self.ratio))
+    }
+}
 
-    /// `None` where memory does not suffice.
-    pub(super) fn new(n_pixels: usize) -> Option<Self> {
-        let mut half_sums = Vec::new();
-        half_sums.try_reserve_exact(n_pixels).ok()?;
-        half_sums.resize(n_pixels, 0.0);
-        Some(Self { half_sums, differences: Vec::new(), mean_luminance: 0.0 })
+/// From the sums of all pixels to the variance of the mean of each.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ErrorModel {
+    sampler: Sampler,
+    ratio: f64,
+}
+
+/// Ratio of the variance when samples double, for independent samples.
+const INDEPENDENT: f64 = 0.5;
+/// Pixels that are summed at once.
+const CHUNK: usize = 4096;
+
+impl ErrorModel {
+    /// Reads the ratio off the pixels.
+    pub(super) fn new(sampler: Sampler, pixels: &[PixelSums]) -> Self {
+        let ratio = match sampler {
+            Sampler::Random { .. } => INDEPENDENT,
+            Sampler::Sobol { .. } => {
+                let [halves, quarters] = sums(pixels, |pixel| {
+                    let is_known = pixel.n_samples >= 4;
+                    let share = |x: f32| if is_known { f64::from(x) } else { 0.0 };
+                    [share(pixel.between_halves), share(pixel.between_quarters)]
+                });
+                sobol_ratio(halves, quarters)
+            }
+        };
+        Self { sampler, ratio }
     }
 
-    /// Takes the luminance sums at a power of two of samples; every power must be recorded.
-    pub(super) fn record(&mut self, n_samples: u32, sums: impl Iterator<Item = f64>) {
-        let n_half = f64::from(n_samples) / 2.0;
-        let n_pixels = self.half_sums.len().max(1) as f64;
-        let (mut difference, mut total) = (0.0, 0.0);
-        for (half, sum) in self.half_sums.iter_mut().zip(sums) {
-            difference += ((2.0 * *half - sum) / n_half).powi(2);
-            total += sum;
-            *half = sum;
+    /// Estimate of the variance of the mean of a pixel's luminance; 0 below two samples.
+    pub(super) fn variance(&self, pixel: &PixelSums) -> f64 {
+        let n = f64::from(pixel.n_samples);
+        if n < 2.0 {
+            return 0.0;
         }
-        if n_samples > 1 {
-            self.differences.push(difference / n_pixels);
+        match self.sampler {
+            Sampler::Random { .. } => {
+                let spread = pixel.squares - pixel.luminance().powi(2) / n;
+                spread.max(0.0) / (n * (n - 1.0))
+            }
+            Sampler::Sobol { .. } => {
+                let halves = f64::from(pixel.between_halves);
+                let quarters = f64::from(pixel.between_quarters);
+                // Three differences tell as much as one: two of them are between quarters.
+                let difference = if pixel.n_samples < 4 {
+                    halves
+                } else {
+                    (halves + 2.0 * self.ratio * quarters) / 3.0
+                };
+                let last_power = f64::from(1_u32 << pixel.n_samples.ilog2());
+                let at_power = 0.25 * difference * self.ratio / (1.0 - self.ratio);
+                at_power * libm::pow(n / last_power, libm::log2(self.ratio))
+            }
         }
-        self.mean_luminance = total / (n_pixels * f64::from(n_samples));
     }
 
-    /// 100 x RMSE over mean at `n_samples`, extrapolated from the last power of two.
-    pub(super) fn percent(&self, n_samples: u32) -> Option<f64> {
-        let last = *self.differences.last()?;
-        let ratio = self.ratio();
-        let n_recorded = f64::from(2_u32.saturating_pow(self.differences.len() as u32));
-        let octaves = (f64::from(n_samples) / n_recorded).log2();
-        let variance = 0.25 * last * ratio / (1.0 - ratio) * ratio.powf(octaves);
-        let percent = 100.0 * variance.sqrt() / self.mean_luminance;
-        percent.is_finite().then_some(percent)
+    /// The figure for a whole picture; `None` where there is none: too few samples, or black.
+    pub(super) fn noise(&self, pixels: &[PixelSums]) -> Option<Noise> {
+        let [variance, squares, light] = sums(pixels, |pixel| {
+            let variance = self.variance(pixel);
+            let n = f64::from(pixel.n_samples.max(1));
+            [variance, variance.powi(2) * self.spread(pixel), pixel.luminance() / n]
+        });
+        let n_pixels = pixels.len() as f64;
+        let percent = 100.0 * (variance / n_pixels).sqrt() / (light / n_pixels);
+        let by_chance = 0.5 * squares.sqrt() / variance.max(f64::MIN_POSITIVE);
+        let by_model: f64 = match self.sampler {
+            Sampler::Random { .. } => 0.0,
+            // What is left where there are pixels enough: see the tests of the gallery.
+            Sampler::Sobol { .. } => 0.08,
+        };
+        let has_two = pixels.first().is_some_and(|pixel| pixel.n_samples >= 2);
+        (has_two && percent.is_finite()).then_some(Noise {
+            percent,
+            uncertainty: by_chance.hypot(by_model),
+            ratio: self.ratio,
+        })
     }
 
-    /// By how much the variance falls when samples double; pooled over the last doublings.
-    fn ratio(&self) -> f64 {
-        const INDEPENDENT: f64 = 0.5;
-        const N_POOLED: usize = 3;
-        let n = self.differences.len();
-        let n_ratios = N_POOLED.min(n.saturating_sub(1));
-        if n_ratios == 0 {
-            return INDEPENDENT;
-        }
-        let (first, last) = (self.differences[n - 1 - n_ratios], self.differences[n - 1]);
-        let ratio = (last / first).powf(1.0 / n_ratios as f64);
-        if ratio.is_finite() { ratio.clamp(0.05, INDEPENDENT) } else { INDEPENDENT }
+    /// Variance of an estimated variance over its square: 2 / (d + 2) for d degrees of freedom.
+    fn spread(&self, pixel: &PixelSums) -> f64 {
+        let freedom = match self.sampler {
+            // Rare bright samples make many worth few.
+            Sampler::Random { .. } => f64::from(pixel.n_samples - 1).min(16.0),
+            Sampler::Sobol { .. } => 3.0,
+        };
+        2.0 / (freedom + 2.0)
     }
+}
+
+/// See the module.
+fn sobol_ratio(halves: f64, quarters: f64) -> f64 {
+    const OF_EDGES: f64 = 0.42;
+    let measured = halves / quarters;
+    if measured.is_finite() && measured > 0.0 {
+        (measured.clamp(0.05, INDEPENDENT) * OF_EDGES).sqrt()
+    } else {
+        INDEPENDENT
+    }
+}
+
+/// Sums over all pixels, in the same order whatever the threads.
+fn sums<const N: usize>(
+    pixels: &[PixelSums],
+    of: impl Fn(&PixelSums) -> [f64; N] + Sync,
+) -> [f64; N] {
+    let add = |mut sum: [f64; N], terms: [f64; N]| {
+        for (sum, term) in sum.iter_mut().zip(terms) {
+            *sum += term;
+        }
+        sum
+    };
+    let of_chunk = |chunk: &[PixelSums]| chunk.iter().map(&of).fold([0.0; N], add);
+    let partial: Vec<[f64; N]> = pixels.par_chunks(CHUNK).map(of_chunk).collect();
+    partial.into_iter().fold([0.0; N], add)
 }

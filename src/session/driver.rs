@@ -22,8 +22,6 @@ const PUBLISH_INTERVAL: Duration = Duration::from_millis(33);
 const FIRST_GUESS_RATE: f64 = 4e5;
 /// First hits a second before anything has been measured.
 const FIRST_GUESS_MAP_RATE: f64 = 2e6;
-/// With fewer samples the estimate of the noise is not to be trusted.
-const LEAST_FOR_NOISE: u32 = 8;
 
 /// A job at work.
 struct Work<W> {
@@ -278,7 +276,7 @@ impl<R: Renderer> Driver<'_, R> {
         let shown = lock(&self.shared.slot).clone();
         let Some(shown) = shown.filter(|frame| frame.generation == work.generation) else { return };
         if wanted.sampling {
-            work.maps.sampling = Some(Arc::new(work.film.sampling()));
+            work.maps.sampling = Some(Arc::new(self.renderer.sampling(&work.film)));
         }
         self.sequence += 1;
         let (sequence, maps) = (self.sequence, work.maps.clone());
@@ -366,7 +364,7 @@ impl<R: Renderer> Driver<'_, R> {
     fn frame(&mut self, work: &Work<R::World>, scale: u32, film: &Film) -> Frame {
         self.sequence += 1;
         let is_wanted = self.shared.orders().wanted.sampling;
-        let sampling = is_wanted.then(|| Arc::new(film.sampling()));
+        let sampling = is_wanted.then(|| Arc::new(self.renderer.sampling(film)));
         Frame {
             generation: work.generation,
             sequence: self.sequence,
@@ -400,12 +398,7 @@ impl<W> Work<W> {
 }
 
 fn is_reached<W>(goal: &Goal, work: &Work<W>) -> bool {
-    let n_samples = work.film.n_samples();
-    let is_clean = n_samples >= LEAST_FOR_NOISE
-        && goal.noise_percent.zip(work.film.noise_percent()).is_some_and(|(goal, now)| now <= goal);
-    n_samples >= goal.samples
-        || is_clean
-        || (n_samples > 0 && goal.seconds.is_some_and(|seconds| work.seconds >= seconds))
+    goal.is_reached(&work.film, work.seconds)
 }
 
 /// To the nearest of the goals, at the speed so far; noise falls with the square root of samples.

@@ -6,7 +6,7 @@ use crate::geometry::{TraversalCost, TreeStatistics};
 use crate::render::features::{cost_map, feature_map};
 use crate::render::film::FilmTooLarge;
 use crate::render::{
-    Feature, Film, PassStatistics, Pick, PixelMap, RenderJob, Stopped, World, render_pass,
+    Feature, Film, PassStatistics, Pick, PixelMap, RenderJob, Sampling, Stopped, World, render_pass,
 };
 use crate::threads;
 
@@ -58,6 +58,9 @@ pub trait Renderer: Send + Sync + 'static {
         world: &Self::World,
         stop: &AtomicBool,
     ) -> Result<PixelMap<TraversalCost>, Stopped>;
+
+    /// Samples and error of every pixel.
+    fn sampling(&self, film: &Film) -> PixelMap<Sampling>;
 
     /// What the middle ray of a pixel meets.
     fn pick(&self, world: &Self::World, x: f32, y: f32) -> Option<Pick>;
@@ -116,6 +119,10 @@ impl Renderer for PoolRenderer {
 
     fn costs(&self, world: &World, stop: &AtomicBool) -> Result<PixelMap<TraversalCost>, Stopped> {
         self.pool.install(|| cost_map(world, stop))
+    }
+
+    fn sampling(&self, film: &Film) -> PixelMap<Sampling> {
+        self.pool.install(|| film.sampling())
     }
 
     fn pick(&self, world: &World, x: f32, y: f32) -> Option<Pick> {

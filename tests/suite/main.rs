@@ -1,6 +1,8 @@
 //! What Penumbra promises, tested from outside: one binary, a module a subject.
 
 #[cfg(test)]
+mod adaptive;
+#[cfg(test)]
 mod analytic;
 #[cfg(test)]
 mod cli;

@@ -92,6 +92,19 @@ fn bytes(job: &RenderJob, passes: &[u32], n_threads: usize) -> Vec<[u32; 3]> {
     film.picture().pixels.into_iter().map(|p| p.map(f32::to_bits)).collect()
 }
 
+/// Decisions fall inside of some of these passes, and between others.
+#[test]
+fn samples_that_go_where_the_error_is_change_no_byte_either() {
+    let text = everything(1.0, "direct", "sobol").replace("seed = 5", "seed = 5\nadaptive = true");
+    let job = job_of(&text, AcceleratorKind::WideBvh);
+    let reference = bytes(&job, &[16, 16, 13], 1);
+    for (passes, n_threads) in [(&[45][..], 2), (&[1, 30, 14], 3), (&[17, 14, 1, 13], 1)] {
+        let found = bytes(&job, passes, n_threads);
+        let n_different = found.iter().zip(&reference).filter(|(a, b)| a != b).count();
+        assert_eq!(n_different, 0, "passes of {passes:?} on {n_threads} threads");
+    }
+}
+
 #[test]
 fn threads_accelerators_and_passes_change_no_byte() {
     for (integrator, sampler) in [("direct", "sobol"), ("path", "random")] {

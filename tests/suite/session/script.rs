@@ -6,7 +6,7 @@ use penumbra::geometry::{TraversalCost, TreeStatistics};
 use penumbra::render::features::{cost_map, feature_map};
 use penumbra::render::film::FilmTooLarge;
 use penumbra::render::{
-    Feature, Film, PassStatistics, Pick, PixelMap, RenderJob, Stopped, World, render_pass,
+    Feature, Film, PassStatistics, Pick, PixelMap, RenderJob, Sampling, Stopped, World, render_pass,
 };
 use penumbra::session::Renderer;
 
@@ -163,6 +163,10 @@ impl Renderer for Script {
     ) -> Result<PixelMap<TraversalCost>, Stopped> {
         self.ask(Question::Costs, seed_of(&world.world.job), stop)?;
         cost_map(&world.world, &AtomicBool::new(false))
+    }
+
+    fn sampling(&self, film: &Film) -> PixelMap<Sampling> {
+        film.sampling()
     }
 
     fn pick(&self, world: &ScriptedWorld, x: f32, y: f32) -> Option<Pick> {
