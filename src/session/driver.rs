@@ -284,13 +284,7 @@ impl<R: Renderer> Driver<'_, R> {
     }
 
     /// Makes maps of a picture smaller by `scale`.
-    fn survey(
-        &mut self,
-        work: &mut Work<R::World>,
-        scale: u32,
-        wanted: Wanted,
-        stop: &AtomicBool,
-    ) {
+    fn survey(&mut self, work: &mut Work<R::World>, scale: u32, wanted: Wanted, stop: &AtomicBool) {
         let coarse = (1 < scale).then(|| self.renderer.coarse(&work.world, scale));
         let world = coarse.as_ref().unwrap_or(&*work.world);
         let start = Instant::now();

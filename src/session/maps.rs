@@ -20,6 +20,15 @@ impl Wanted {
     /// No maps at all.
     pub const NOTHING: Self = Self { features: false, costs: false, sampling: false };
 
+    /// What one of the two wants.
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            features: self.features || other.features,
+            costs: self.costs || other.costs,
+            sampling: self.sampling || other.sampling,
+        }
+    }
+
     /// Whether all of `other` is wanted here.
     pub fn covers(self, other: Self) -> bool {
         (self.features || !other.features)
@@ -52,7 +61,8 @@ impl Maps {
     /// What of `wanted` is not there in a job's full size.
     pub(super) fn unfinished(&self, wanted: Wanted, job: &RenderJob) -> Wanted {
         let size = (job.width, job.height);
-        let has_features = self.features.as_ref().is_some_and(|map| (map.width, map.height) == size);
+        let has_features =
+            self.features.as_ref().is_some_and(|map| (map.width, map.height) == size);
         let has_costs = self.costs.as_ref().is_some_and(|map| (map.width, map.height) == size);
         Wanted {
             features: wanted.features && !has_features,

@@ -54,6 +54,13 @@ impl App {
                 scene.clone_from(&self.document.description);
             }
             Action::Compare => self.toggle_compare(ctx),
+            Action::ShowPinned if self.pinned.is_none() => {
+                self.toasts.say("pin a picture first, then hold the key to see it");
+            }
+            // Shown as long as the key is down.
+            Action::ShowPinned => {}
+            Action::Show(view) => self.interface.display.view = view,
+            Action::Loupe => self.interface.loupe.press(ctx.input(|input| input.time)),
             Action::TogglePanel => self.interface.panel_shown = !self.interface.panel_shown,
             Action::FullScreen => {
                 let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
@@ -141,6 +148,7 @@ impl App {
     fn cancel(&mut self, ctx: &egui::Context) {
         let closed = std::mem::take(&mut self.interface.help_shown)
             || self.interface.picking.take().is_some()
+            || std::mem::take(&mut self.interface.loupe.shown)
             || self.dialogs.dismiss()
             || self.stop_asking()
             || self.files.cancel_loading()

@@ -5,6 +5,7 @@ use super::compare::Pinned;
 use super::dialogs::PathDialogs;
 use super::files::FileWork;
 use super::gesture::Gesture;
+use super::lens_overlay::LensOverlay;
 use super::picture::PictureDisplay;
 use super::probe::Probe;
 use super::recovery::Recovery;
@@ -19,7 +20,7 @@ use crate::document::Document;
 use crate::io::scene_file;
 use crate::loader::{Loader, Source};
 use crate::scene::description::{CameraDescription, SceneDescription};
-use crate::session::Session;
+use crate::session::{Session, Wanted};
 use crate::threads;
 use egui::Ui;
 use std::path::PathBuf;
@@ -43,6 +44,9 @@ pub(super) struct App {
     /// The picture that the live one is compared with.
     pub(super) pinned: Option<Pinned>,
     pub(super) probe: Probe,
+    pub(super) lens_overlay: LensOverlay,
+    /// The motion of the hand that last changed the lens.
+    lens_gesture: Option<u64>,
     pub(super) watcher: Watcher,
     pub(super) recovery: Recovery,
     pub(super) picture: PictureDisplay,
@@ -97,6 +101,8 @@ impl App {
             snapshot_wanted: false,
             pinned: None,
             probe: Probe::default(),
+            lens_overlay: LensOverlay::new(wake())?,
+            lens_gesture: None,
             watcher: Watcher::new(wake())?,
             recovery: Recovery::new(own_folder),
             gesture: Gesture::default(),
@@ -127,9 +133,27 @@ impl App {
             self.toasts.say(fault.to_string());
             return;
         }
+        if lens_of(&self.document.description.camera) != lens_of(&scene.camera) {
+            self.lens_gesture = Some(self.gesture.id());
+        }
         let label = edit_label(&self.document.description, &scene);
         self.document.description = scene;
         self.document.checkpoint(label, Some(self.gesture.id()));
+    }
+
+    /// Whether what is sharp is marked in the picture: where that is switched on, and while the
+    /// lens is dragged.
+    pub(super) fn marks_sharpness(&self, ctx: &egui::Context) -> bool {
+        let is_dragging = self.lens_gesture == Some(self.gesture.id())
+            && ctx.input(|input| input.pointer.any_down());
+        self.interface.lens_shown || is_dragging
+    }
+
+    /// The maps that something on the screen is made of.
+    fn wanted(&self, ctx: &egui::Context) -> Wanted {
+        let looks_behind = self.interface.loupe.shown || self.marks_sharpness(ctx);
+        let features = Wanted { features: looks_behind, ..Wanted::NOTHING };
+        self.interface.display.view.wanted().and(features)
     }
 
     /// The bytes on show.
@@ -149,8 +173,10 @@ impl App {
             }
         }
         self.work.session.set_paused(self.interface.is_paused);
+        self.work.session.want(self.wanted(ctx));
         if let Some(frame) = self.work.session.latest() {
-            self.picture.show(&frame, &self.document.description.tone_mapping);
+            let view = self.interface.display.view;
+            self.picture.show(&frame, view, &self.document.description.tone_mapping);
             if frame.scale == 1 {
                 self.work.note_noise(frame.generation, frame.samples, frame.noise_percent);
             }
@@ -208,6 +234,11 @@ impl eframe::App for App {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         eframe::set_value(storage, Remembered::KEY, &Remembered::of(&self.interface));
     }
+}
+
+/// What decides what is sharp.
+fn lens_of(camera: &CameraDescription) -> (f64, Option<f64>) {
+    (camera.aperture_radius, camera.focal_distance)
 }
 
 /// What undo would say it undoes.

@@ -39,6 +39,23 @@ impl Pinned {
         Self { description, texture, split: 0.5, differences: Vec::new(), compared_with: None }
     }
 
+    /// Draws the pinned picture over all of the live one, for as long as a key is held.
+    pub(super) fn show_alone(&self, ui: &Ui, picture: Rect, clip: Rect) {
+        let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+        let painter = ui.painter_at(clip);
+        painter.image(self.texture.id(), picture, whole, Color32::WHITE);
+        let corner = picture.intersect(clip).left_top() + egui::vec2(12.0, 12.0);
+        let text = egui::FontId::proportional(13.0);
+        let galley = painter.layout_no_wrap("pinned".to_owned(), text, Color32::WHITE);
+        let chip = Rect::from_min_size(corner, galley.size() + egui::vec2(16.0, 8.0));
+        painter.rect_filled(chip, 6.0, Color32::from_black_alpha(190));
+        painter.galley(corner + egui::vec2(8.0, 4.0), galley, Color32::WHITE);
+        let response = ui.interact(chip, ui.scope_id().with("pinned"), Sense::hover());
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Image, true, "Pinned picture alone")
+        });
+    }
+
     /// Draws the pinned picture over the left part of the live one in `picture`, the split, and
     /// the list of differences to `scene`.
     pub(super) fn show(

@@ -11,7 +11,7 @@ mod parts;
 mod render;
 mod textures;
 
-pub(super) use camera::camera_ui;
+pub(super) use camera::{camera_ui, sharp_range};
 pub(super) use display::{DisplayState, PictureStatistics, display_ui};
 pub(super) use lights::lights_ui;
 pub(super) use materials::materials_ui;

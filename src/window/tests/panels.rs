@@ -23,13 +23,15 @@ struct Bench {
     unit_mm: f64,
     picking: Option<PickFor>,
     lights_shown: bool,
+    lens_shown: bool,
     limits: Limits,
 }
 
 type Panel = fn(&mut egui::Ui, &mut Bench);
 
 const CAMERA: Panel = |ui, bench| {
-    camera_ui(ui, &mut bench.scene.camera, &mut bench.unit_mm, &mut bench.picking);
+    let (unit, picking) = (&mut bench.unit_mm, &mut bench.picking);
+    camera_ui(ui, &mut bench.scene.camera, unit, picking, &mut bench.lens_shown);
 };
 const LIGHTS: Panel = |ui, bench| {
     let (picking, shown) = (&mut bench.picking, &mut bench.lights_shown);
@@ -65,6 +67,7 @@ fn harness(panel: Panel) -> Harness<'static, Bench> {
         unit_mm: 100.0,
         picking: None,
         lights_shown: false,
+        lens_shown: false,
         limits: Limits::default(),
     };
     let mut installed = false;

@@ -1,8 +1,8 @@
 //! From maps to colours: a figure a pixel, a ramp that tells it, and a legend.
 
+use super::View;
 use super::legend::{Legend, Ramp};
 use super::scale::{Scale, rounded_down, rounded_up};
-use super::View;
 use crate::color::srgb_from_linear;
 use crate::geometry::TraversalCost;
 use crate::render::{Feature, PixelMap, Sampling, Seen};
@@ -107,7 +107,11 @@ fn cost(map: &PixelMap<TraversalCost>) -> Painted {
     let note = format!("on the mean {nodes:.1} nodes and {tests:.1} tests");
     let scale = Scale::Linear { high: rounded_up(high.max(1.0)) };
     let unit = "nodes and tests a ray";
-    figures(map, |cost| Some(value(cost)), Legend::figures(View::Cost, unit, &note, Ramp::HEAT, scale))
+    figures(
+        map,
+        |cost| Some(value(cost)),
+        Legend::figures(View::Cost, unit, &note, Ramp::HEAT, scale),
+    )
 }
 
 fn samples(map: &PixelMap<Sampling>) -> Painted {

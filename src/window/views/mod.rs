@@ -8,7 +8,7 @@ mod scale;
 use crate::session::{Frame, Wanted};
 use std::sync::Arc;
 
-pub(super) use false_color::{Painted, paint};
+pub(super) use false_color::paint;
 pub(super) use legend::{Legend, legend_ui};
 
 /// What is shown of each pixel.

@@ -120,7 +120,10 @@ mod tests {
             assert!(3 <= marks.len(), "{scale:?} has {marks:?}");
             for (place, text) in &marks {
                 let value: f64 = text.replace('−', "-").parse().unwrap();
-                assert!((scale.place(value) - place).abs() < 1e-6, "{text} of {scale:?} at {place}");
+                assert!(
+                    (scale.place(value) - place).abs() < 1e-6,
+                    "{text} of {scale:?} at {place}"
+                );
             }
             assert_eq!((marks[0].0, marks[marks.len() - 1].0), (0.0, 1.0), "the ends of {scale:?}");
         }

@@ -14,10 +14,7 @@ const LARGE: u32 = 300;
 fn full_passes(calls: &[Call]) -> Vec<(u32, u32)> {
     let pass = |call: &Call| match call.question {
         Question::Pass { before, n_samples } => Some((before, n_samples)),
-        Question::Prepare
-        | Question::Preview
-        | Question::Features { .. }
-        | Question::Costs => None,
+        Question::Prepare | Question::Preview | Question::Features { .. } | Question::Costs => None,
     };
     calls.iter().filter_map(pass).collect()
 }
@@ -461,7 +458,11 @@ fn a_drag_over_a_view_always_shows_something() {
                 assert!(!call.is_stopped(), "the first map of job {seed} was stopped");
             }
             let was_preview = call.question == Question::Preview && call.seed == seed;
-            if call.is_stopped() { call.until_stopped() } else { drop(call.run()) }
+            if call.is_stopped() {
+                call.until_stopped()
+            } else {
+                drop(call.run())
+            }
             if was_preview {
                 break;
             }
