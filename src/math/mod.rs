@@ -10,6 +10,8 @@ pub mod noise;
 pub mod portable;
 pub mod sampler;
 pub mod sobol;
+pub mod spherical_ellipse;
+pub mod spherical_rectangle;
 mod transform;
 pub mod warp;
 

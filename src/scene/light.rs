@@ -1,10 +1,17 @@
 //! Sources of light, sampled from a point that they shine on.
+//!
+//! Rectangles, spheres and suns are sampled uniformly by the solid angle that they fill, disks
+//! nearly so; small and far rectangles and disks by their area, which is the same there.
+
+mod sphere;
 
 use std::f32::consts::{PI, TAU};
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use crate::color::Rgb;
+use crate::math::spherical_ellipse::SphericalEllipse;
+use crate::math::spherical_rectangle::SphericalRectangle;
 use crate::math::{Frame, Ray, portable, warp};
 
 /// A source of light. Never blocks light; seen by the camera only if `visible`.
@@ -108,22 +115,40 @@ impl Light {
     pub fn sample(&self, from: Vec3, u: [f32; 2]) -> Option<LightSample> {
         match self.emitter {
             Emitter::Rectangle { center, frame, half: [a, b], radiance } => {
-                let (x, y) = (a * (2.0 * u[0] - 1.0), b * (2.0 * u[1] - 1.0));
-                let point = center + frame.x * x + frame.y * y;
-                from_area(from, point, frame.z, 4.0 * a * b, radiance)
+                let seen = seen_from(from, center, &frame);
+                let Some(whole) = spherical_rectangle([a, b], seen) else {
+                    let (x, y) = (a * (2.0 * u[0] - 1.0), b * (2.0 * u[1] - 1.0));
+                    let point = center + frame.x * x + frame.y * y;
+                    return from_area(from, point, frame.z, 4.0 * a * b, radiance);
+                };
+                let p = whole.sample(u.map(f64::from));
+                let reach = in_world(&frame, DVec3::new(p.x, p.y, -p.z)).as_vec3();
+                let pdf = (1.0 / whole.solid_angle) as f32;
+                Some(LightSample::at(reach, Some(frame.z), radiance, pdf))
             }
             Emitter::Disk { center, frame, radius, radiance } => {
-                let p = warp::square_to_disk(u) * radius;
-                let point = center + frame.x * p.x + frame.y * p.y;
-                from_area(from, point, frame.z, PI * radius * radius, radiance)
+                let p = warp::square_to_disk(u);
+                let seen = seen_from(from, center, &frame);
+                let Some(cone) = spherical_ellipse(radius, seen) else {
+                    let point = center + (frame.x * p.x + frame.y * p.y) * radius;
+                    return from_area(from, point, frame.z, PI * radius * radius, radiance);
+                };
+                let direction = cone.sample(p.as_dvec2());
+                // A direction at the very rim may be rounded into the plane.
+                if direction.z >= 0.0 {
+                    return None;
+                }
+                let reach = in_world(&frame, direction * (seen.z / -direction.z)).as_vec3();
+                let pdf = cone.pdf(direction) as f32;
+                Some(LightSample::at(reach, Some(frame.z), radiance, pdf))
             }
             Emitter::Sphere { center, radius, radiance } => {
-                let one_minus_cos = sphere_cap(from, center, radius)?;
+                let one_minus_cos = sphere::cap(from, center, radius)?;
                 let axis = (center - from).normalize();
                 let local = warp::square_to_cap(u, one_minus_cos);
                 let direction = Frame::from_normal(axis).world_from_local(local);
-                let (t, normal) = nearest_of_sphere(from, direction, center, radius)
-                    .unwrap_or_else(|| tangent_of_sphere(from, direction, center));
+                let (t, normal) = sphere::nearest(from, direction, center, radius)
+                    .unwrap_or_else(|| sphere::tangent(from, direction, center));
                 let pdf = 1.0 / (TAU * one_minus_cos);
                 Some(LightSample {
                     direction,
@@ -177,8 +202,7 @@ impl Light {
                 (p.x * p.x + p.y * p.y <= radius * radius).then(|| met(t, radiance)).flatten()
             }
             Emitter::Sphere { center, radius, radiance } => {
-                sphere_cap(origin, center, radius)?;
-                let (t, _) = nearest_of_sphere(origin, direction, center, radius)?;
+                let (t, _) = sphere::nearest(origin, direction, center, radius)?;
                 met(t, radiance)
             }
             Emitter::SunCap { frame, one_minus_cos, radiance } => {
@@ -210,15 +234,66 @@ impl Light {
             if cos > 0.0 { t * t / (cos * area) } else { 0.0 }
         };
         match self.emitter {
-            Emitter::Rectangle { frame, half, .. } => of_area(frame.z, 4.0 * half[0] * half[1]),
-            Emitter::Disk { frame, radius, .. } => of_area(frame.z, PI * radius * radius),
+            Emitter::Rectangle { center, frame, half, .. } => {
+                match spherical_rectangle(half, seen_from(from, center, &frame)) {
+                    Some(whole) => (1.0 / whole.solid_angle) as f32,
+                    None => of_area(frame.z, 4.0 * half[0] * half[1]),
+                }
+            }
+            Emitter::Disk { center, frame, radius, .. } => {
+                match spherical_ellipse(radius, seen_from(from, center, &frame)) {
+                    Some(cone) => cone.pdf(in_frame(&frame, direction.as_dvec3())) as f32,
+                    None => of_area(frame.z, PI * radius * radius),
+                }
+            }
             Emitter::Sphere { center, radius, .. } => {
-                sphere_cap(from, center, radius).map_or(0.0, |cap| 1.0 / (TAU * cap))
+                sphere::cap(from, center, radius).map_or(0.0, |cap| 1.0 / (TAU * cap))
             }
             Emitter::SunCap { one_minus_cos, .. } => 1.0 / (TAU * one_minus_cos),
             Emitter::Point { .. } | Emitter::Spot { .. } | Emitter::Sun { .. } => 0.0,
         }
     }
+}
+
+impl LightSample {
+    /// Of the point of a light that is `reach` away, found with density `pdf` per solid angle.
+    fn at(reach: Vec3, normal: Option<Vec3>, radiance: Rgb, pdf: f32) -> Self {
+        let (direction, weight) = (reach.normalize(), radiance / pdf);
+        Self { direction, reach, t_max: 1.0, normal, weight, pdf: Some(pdf) }
+    }
+}
+
+/// A point in the frame around a light's centre.
+fn seen_from(from: Vec3, center: Vec3, frame: &Frame) -> DVec3 {
+    in_frame(frame, from.as_dvec3() - center.as_dvec3())
+}
+
+fn in_frame(frame: &Frame, v: DVec3) -> DVec3 {
+    let Frame { x, y, z } = frame;
+    DVec3::new(x.as_dvec3().dot(v), y.as_dvec3().dot(v), z.as_dvec3().dot(v))
+}
+
+fn in_world(frame: &Frame, v: DVec3) -> DVec3 {
+    frame.x.as_dvec3() * v.x + frame.y.as_dvec3() * v.y + frame.z.as_dvec3() * v.z
+}
+
+/// From this distance on, in squared half diagonals or radii, light is sampled by area: distance and
+/// cosine hardly change over it.
+const FAR2: f64 = 100.0;
+
+/// A rectangle of these half extents from a point before it; `None` where it is sampled by area.
+fn spherical_rectangle(half: [f32; 2], seen: DVec3) -> Option<SphericalRectangle> {
+    let half = half.map(f64::from);
+    let reach2 = half[0] * half[0] + half[1] * half[1];
+    let is_near = seen.z > 0.0 && seen.length_squared() < FAR2 * reach2;
+    is_near.then(|| SphericalRectangle::new(half, seen)).flatten()
+}
+
+/// The same for a disk.
+fn spherical_ellipse(radius: f32, seen: DVec3) -> Option<SphericalEllipse> {
+    let radius = f64::from(radius);
+    let is_near = seen.z > 0.0 && seen.length_squared() < FAR2 * radius * radius;
+    is_near.then(|| SphericalEllipse::new(radius, seen)).flatten()
 }
 
 fn from_area(
@@ -236,14 +311,7 @@ fn from_area(
         return None;
     }
     let pdf = distance2 / (cos * area);
-    Some(LightSample {
-        direction,
-        reach,
-        t_max: 1.0,
-        normal: Some(normal),
-        weight: radiance / pdf,
-        pdf: Some(pdf),
-    })
+    Some(LightSample::at(reach, Some(normal), radiance, pdf))
 }
 
 fn from_point(from: Vec3, position: Vec3, intensity: impl Fn(Vec3) -> Rgb) -> Option<LightSample> {
@@ -265,39 +333,6 @@ fn meet_front(origin: Vec3, direction: Vec3, center: Vec3, frame: &Frame) -> Opt
     }
     let t = frame.z.dot(center - origin) / cos;
     Some((t, frame.local_from_world(origin + direction * t - center)))
-}
-
-/// 1 - cosine of the angle that a sphere fills; `None` from inside or on it.
-fn sphere_cap(from: Vec3, center: Vec3, radius: f32) -> Option<f32> {
-    let distance2 = (center - from).length_squared();
-    let sin2 = radius * radius / distance2;
-    (sin2 < 1.0).then(|| sin2 / (1.0 + (1.0 - sin2).sqrt()))
-}
-
-/// Nearest meeting of a ray with a sphere, from outside: the parameter and the unit normal.
-fn nearest_of_sphere(
-    origin: Vec3,
-    direction: Vec3,
-    center: Vec3,
-    radius: f32,
-) -> Option<(f32, Vec3)> {
-    let f = origin - center;
-    let a = direction.length_squared();
-    let b = -f.dot(direction);
-    let miss = f + direction * (b / a);
-    let discriminant = radius * radius - miss.length_squared();
-    if discriminant < 0.0 || b <= 0.0 {
-        return None;
-    }
-    let c = f.length_squared() - radius * radius;
-    let t = c / (b + (a * discriminant).sqrt());
-    Some((t, ((f + direction * t) / radius).normalize()))
-}
-
-/// The point of a sampled direction that rounding put just outside the sphere.
-fn tangent_of_sphere(from: Vec3, direction: Vec3, center: Vec3) -> (f32, Vec3) {
-    let t = (center - from).dot(direction);
-    (t, (from + direction * t - center).normalize())
 }
 
 /// The emitter of a light of some power and size.

@@ -97,6 +97,42 @@ fn a_rectangle_agrees_with_lamberts_formula_however_it_is_turned() {
     }
 }
 
+/// So close that the light fills nearly half of all directions, and so low that it is seen edge on.
+/// Sampling by area has weights without bound here; by solid angle a few hundred samples do.
+#[test]
+fn large_lights_close_by_agree_with_their_closed_forms() {
+    for (x, y) in [(0.0, 0.01), (0.9, 0.02), (1.3, 0.1), (3.0, 0.03), (-0.2, 0.6)] {
+        let body = |kind: &str, size: &str| {
+            light(&format!(
+                "type = '{kind}'\nposition = [{x}, {y}, 0]\ntarget = [{x}, 0, 0]\n\
+                 up = [0, 0, 1]\nsize = {size}\npower = [5, 5, 5]\nvisible = false"
+            ))
+        };
+        let look = Look::at([0.3, 1e-3, 0.2], [0.0; 3]).samples(1024);
+        let found = |kind: &str, size: &str| PI * look.radiance(&body(kind, size)).x;
+        // Seen from below, -y, which faces the floor; u and v are x and z.
+        let corner = |sx: f64, sz: f64| DVec3::new(x + sx, y, 0.4 * sz);
+        let corners = [corner(-1., -1.), corner(1., -1.), corner(1., 1.), corner(-1., 1.)];
+        let expected = 5.0 / (PI * 1.6) * lambert_polygon(DVec3::ZERO, DVec3::Y, &corners);
+        let what = format!("rectangle at ({x}, {y})");
+        assert_close(found("rectangle", "[2, 0.8]"), expected, 4e-3, &what);
+        let (a2, h2): (f64, f64) = (x * x, y * y);
+        let root = ((a2 + h2 + 1.0).powi(2) - 4.0 * a2).sqrt();
+        let expected = 0.5 * 5.0 / PI * (1.0 - (a2 + h2 - 1.0) / root);
+        assert_close(found("disk", "2"), expected, 4e-3, &format!("disk at ({x}, {y})"));
+    }
+    // A sphere that rests a thousandth of its radius above the floor, and one high above it.
+    for height in [1.001, 1.3, 4.0] {
+        let body = light(&format!(
+            "type = 'sphere'\nposition = [0, {height}, 0]\nsize = 2\npower = [5, 5, 5]\n\
+             visible = false"
+        ));
+        let expected = 5.0 / (4.0 * PI) / (height * height);
+        let found = PI * Look::at([2e-4, 2e-4, 0.0], [0.0; 3]).radiance(&body).x;
+        assert_close(found, expected, 2e-3, &format!("sphere at {height}"));
+    }
+}
+
 /// At constant power the size does not change the light far away, down to the limit of a point.
 #[test]
 fn size_does_not_change_the_far_field() {
