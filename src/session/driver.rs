@@ -387,7 +387,11 @@ impl<R: Renderer> Driver<'_, R> {
 impl<W> Work<W> {
     /// The maps that are still to be made in full size.
     fn unfinished(&self, wanted: Wanted) -> Wanted {
-        if self.has_no_maps { Wanted::NOTHING } else { self.maps.unfinished(wanted, &self.job) }
+        if self.has_no_maps {
+            return Wanted::NOTHING;
+        }
+        let sampling = wanted.sampling && 0 < self.film.n_samples();
+        self.maps.unfinished(Wanted { sampling, ..wanted }, &self.job)
     }
 }
 

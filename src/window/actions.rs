@@ -6,6 +6,7 @@ use super::dialogs::{Purpose, UnsavedAnswer, unsaved_question};
 use super::files::Pending;
 use super::keys::Action;
 use super::toolbar::ToolbarChoice;
+use crate::io::scene_file;
 use crate::loader::Source;
 use crate::scene::description::{SceneDescription, ToneOperator};
 use crate::scene::orbit::{self, StandardView};
@@ -175,11 +176,21 @@ impl App {
 
     /// Does what was chosen at the pinned picture.
     pub(super) fn do_compare(&mut self, scene: &mut SceneDescription, choice: CompareChoice) {
-        if let (CompareChoice::Restore, Some(pinned)) = (choice, &self.pinned) {
-            scene.clone_from(&pinned.description);
-            self.gesture.next();
+        self.gesture.next();
+        match choice {
+            CompareChoice::RestoreOne(path, value) => {
+                match scene_file::with_value(scene, &path, value) {
+                    Ok(restored) => *scene = restored,
+                    Err(error) => self.toasts.say(error.to_string()),
+                }
+            }
+            CompareChoice::Restore => {
+                if let Some(pinned) = self.pinned.take() {
+                    *scene = pinned.description;
+                }
+            }
+            CompareChoice::Close => self.pinned = None,
         }
-        self.pinned = None;
     }
 
     /// Leaves the question about unsaved edits unanswered: everything stays.

@@ -79,13 +79,24 @@ impl App {
         first: Source,
         own_folder: Option<PathBuf>,
     ) -> std::io::Result<Self> {
-        let wake = || {
-            let ctx = ctx.clone();
-            move || ctx.request_repaint()
-        };
         // One processor is left to the window itself.
         let n_threads = threads::available().saturating_sub(1).max(1);
-        let session = Session::new(n_threads, wake())?;
+        let session = Session::new(n_threads, waking(ctx))?;
+        Self::with_session(ctx, remembered, first, own_folder, session)
+    }
+
+    /// The same around any session: tests script one.
+    ///
+    /// # Errors
+    /// When the system has no thread left.
+    pub(super) fn with_session(
+        ctx: &egui::Context,
+        remembered: Remembered,
+        first: Source,
+        own_folder: Option<PathBuf>,
+        session: Session,
+    ) -> std::io::Result<Self> {
+        let wake = || waking(ctx);
         let mut files = FileWork::new(Loader::new(wake())?);
         files.open(first);
         let empty = empty_scene();
@@ -234,6 +245,12 @@ impl eframe::App for App {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         eframe::set_value(storage, Remembered::KEY, &Remembered::of(&self.interface));
     }
+}
+
+/// Asks for a frame of the window, from any thread.
+fn waking(ctx: &egui::Context) -> impl Fn() + Clone + Send + Sync + 'static {
+    let ctx = ctx.clone();
+    move || ctx.request_repaint()
 }
 
 /// What decides what is sharp.

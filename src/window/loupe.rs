@@ -8,6 +8,8 @@ use egui::{Color32, ColorImage, Grid, Pos2, Rect, RichText, Sense, Stroke, Ui, V
 const N_ACROSS: i32 = 15;
 /// Side of a magnified pixel, in points.
 const CELL: f32 = 12.0;
+/// Height of a line of figures, in points.
+const LINE: f32 = 17.0;
 /// A key that is held so long is let go of; a shorter press leaves the loupe open.
 const HELD_SECS: f64 = 0.35;
 
@@ -52,7 +54,7 @@ pub(super) struct LoupeFacts<'a> {
 /// Shows the loupe beside the cursor, inside the viewport.
 pub(super) fn loupe_ui(ui: &mut Ui, viewport: Rect, cursor: Pos2, facts: &LoupeFacts<'_>) {
     let side = CELL * N_ACROSS as f32;
-    let outer = Vec2::new(side + 24.0, side + 150.0);
+    let outer = Vec2::new(side + 16.0, side + 16.0 + 7.0 * LINE);
     let mut corner = cursor + Vec2::splat(24.0);
     if viewport.right() < corner.x + outer.x {
         corner.x = cursor.x - 24.0 - outer.x;
@@ -130,6 +132,7 @@ fn figures_ui(ui: &mut Ui, facts: &LoupeFacts<'_>) {
         }
         lines.push(("Blur", format!("{:.1} px", probed.blur_px)));
     }
+    ui.spacing_mut().interact_size.y = LINE - 2.0;
     Grid::new("loupe figures").num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
         for (name, value) in lines {
             ui.label(RichText::new(name).weak().small());

@@ -53,13 +53,13 @@ fn lens_ui(
         .default_value(0.0)
         .help("radius of the lens: wider is more blur away from the focus, 0 is a pinhole")
         .show(ui, &mut camera.aperture_radius);
-    row(ui, "", "", |ui| {
-        ui.label(equivalent(camera, *scene_unit_mm)).on_hover_text(
-            "the same lens on a full-frame camera, 36 x 24 mm: f-number, focal length",
-        );
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            unit_ui(ui, scene_unit_mm);
-        });
+    let help = "the lens of a full-frame camera, 36 x 24 mm, that takes this picture: f-number and \
+                focal length";
+    row(ui, "Full frame", help, |ui| {
+        ui.label(equivalent(camera, *scene_unit_mm)).on_hover_text(help);
+    });
+    row(ui, "Scene unit", "what one scene unit stands for in the f-number", |ui| {
+        unit_ui(ui, scene_unit_mm);
     });
     focus_ui(ui, camera, focus, picking);
     Figure::new("Field of view", "camera.vertical_fov".to_owned(), 5.0..=120.0)
@@ -134,7 +134,7 @@ fn unit_ui(ui: &mut Ui, scene_unit_mm: &mut f64) {
     let units = [(1.0, "1 mm"), (10.0, "1 cm"), (100.0, "10 cm"), (1000.0, "1 m")];
     let shown = units.iter().find(|(mm, _)| mm == scene_unit_mm).map_or("", |(_, name)| name);
     let response = egui::ComboBox::from_id_salt("scene unit")
-        .width(64.0)
+        .width(ui.available_width())
         .selected_text(shown)
         .show_ui(ui, |ui| {
             for (mm, name) in units {
@@ -144,7 +144,6 @@ fn unit_ui(ui: &mut Ui, scene_unit_mm: &mut f64) {
         .response
         .accessible_name("Scene unit");
     response.on_hover_text("what one scene unit stands for in the f-number");
-    ui.weak("1 unit =");
 }
 
 /// Focal length of a full-frame camera with the same view, in millimetres.

@@ -2,6 +2,8 @@
 
 mod layout;
 mod panels;
+mod promises;
+mod views;
 mod whole;
 
 use crate::scene::description::{

@@ -9,6 +9,7 @@ use crate::window::panels::{
     lights_ui, materials_ui, objects_ui, render_ui, textures_ui,
 };
 use crate::window::theme;
+use crate::window::views::View;
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -310,6 +311,8 @@ fn display_and_render_follow_their_controls() {
     press(&mut shown, "Curve: ACES");
     let tone = &shown.state().scene.tone_mapping;
     assert_eq!((tone.exposure, tone.operator), (1.5, ToneOperator::Aces), "another display");
+    choose(&mut shown, "View", "Circle of confusion");
+    assert_eq!(shown.state().display.view, View::Blur, "another view");
 
     let mut rendered = harness(RENDER);
     type_figure(&mut rendered, "Samples", "1000");

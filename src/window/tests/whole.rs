@@ -31,6 +31,11 @@ fn window_with(path: &Path, size: [f32; 2], own: Option<PathBuf>) -> Harness<'st
     let source = Source::File(path.to_owned());
     let ctx = egui::Context::default();
     let app = App::new(&ctx, Remembered::default(), source, own).expect("the threads start");
+    harness_of(app, size, 1.0)
+}
+
+/// A window of that size in points around an app, once its scene is loaded.
+pub(super) fn harness_of(app: App, size: [f32; 2], pixels_per_point: f32) -> Harness<'static, App> {
     let mut installed = false;
     let frame = move |ui: &mut egui::Ui, app: &mut App| {
         if !std::mem::replace(&mut installed, true) {
@@ -39,7 +44,8 @@ fn window_with(path: &Path, size: [f32; 2], own: Option<PathBuf>) -> Harness<'st
         app.take_news(ui.ctx());
         app.frame_ui(ui);
     };
-    let mut harness = Harness::builder().with_size(size).build_ui_state(frame, app);
+    let builder = Harness::builder().with_size(size).with_pixels_per_point(pixels_per_point);
+    let mut harness = builder.build_ui_state(frame, app);
     wait_until(&mut harness, |app| app.files.has_scene);
     harness
 }
@@ -55,7 +61,7 @@ pub(super) fn wait_until(harness: &mut Harness<'_, App>, is_so: impl Fn(&App) ->
     harness.run_steps(3);
 }
 
-fn drag(harness: &mut Harness<'_, App>, from: egui::Pos2, by: egui::Vec2) {
+pub(super) fn drag(harness: &mut Harness<'_, App>, from: egui::Pos2, by: egui::Vec2) {
     harness.drag_at(from);
     harness.run_steps(1);
     for step in 1..=5 {
@@ -217,6 +223,13 @@ fn a_pinned_picture_can_be_restored() {
     harness.key_press(egui::Key::D);
     harness.run_steps(3);
     assert!(harness.query_by_label_contains("camera.aperture_radius").is_some(), "not listed");
+    harness.key_press(egui::Key::E);
+    harness.run_steps(3);
+    let line = "tone_mapping.exposure";
+    harness.get_by_label_contains(line).click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().document.description.tone_mapping.exposure, 0.0, "one value stays");
+    assert!(harness.query_by_label_contains(line).is_none(), "still listed");
     harness.get_by_role_and_label(Role::Button, "Restore").click();
     harness.run_steps(3);
     assert_eq!(harness.state().document.description, before, "the pinned scene is not back");

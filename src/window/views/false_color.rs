@@ -70,13 +70,13 @@ fn normals(map: &PixelMap<Feature>) -> Painted {
         let [r, g, b] = feature.normal.to_array().map(byte);
         Color32::from_rgb(r, g, b)
     };
-    let note = "red faces +X, green +Y, blue +Z of the world; grey is neither";
+    let note = "red faces +X, green +Y, blue +Z of the world";
     colored(map, color, Legend::words(View::Normals, note))
 }
 
 fn depth(map: &PixelMap<Feature>) -> Painted {
     let value = |feature: &Feature| f64::from(feature.depth);
-    let (low, high) = range(map, value, 0.0, 0.99);
+    let (low, high) = range(map, value, 0.002, 0.97);
     let low = rounded_down(low);
     let scale = Scale::Logarithmic { low, high: rounded_up(high).max(low * 1.5) };
     let legend = Legend::figures(View::Depth, "scene units", "", Ramp::GREY, scale);
