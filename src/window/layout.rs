@@ -152,7 +152,7 @@ impl App {
             &mut self.interface.navigation,
             self.picture.shown().as_ref(),
             size,
-            self.interface.display.zoom,
+            &mut self.interface.display,
             self.interface.picking,
         );
         if let Some(click) = output.click {

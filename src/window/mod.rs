@@ -29,6 +29,7 @@ mod presets;
 mod probe;
 mod recovery;
 mod relocate;
+mod scroll;
 mod state;
 mod status;
 mod structure;

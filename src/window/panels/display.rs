@@ -7,12 +7,20 @@ use crate::window::widgets::{Figure, choice, pick_one, row};
 use egui::{Color32, Ui, Vec2};
 
 /// How the picture is shown, beside what the scene file keeps.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::window) struct DisplayState {
     /// What is shown of each pixel.
     pub(in crate::window) view: View,
     /// Size of a picture pixel on the screen.
     pub(in crate::window) zoom: Zoom,
+    /// How far a picture that does not fit is scrolled to the right and down, each 0..=1.
+    pub(in crate::window) scroll: Vec2,
+}
+
+impl Default for DisplayState {
+    fn default() -> Self {
+        Self { view: View::default(), zoom: Zoom::default(), scroll: Vec2::splat(0.5) }
+    }
 }
 
 /// Counts of displayed values, for the histogram.

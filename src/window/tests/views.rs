@@ -160,5 +160,9 @@ fn pictures_are_rendered_in_the_pixels_of_the_screen() {
         harness.run_steps(2);
         let zoom = harness.state().viewport.zoom_percent;
         assert!((zoom - 200.0).abs() < 1e-3, "{zoom} at {per_point}");
+        let bar = harness.get_by_role_and_label(Role::ScrollBar, "Scroll sideways").rect();
+        super::whole::drag(&mut harness, bar.center(), egui::vec2(500.0, 0.0));
+        let scroll = harness.state().interface.display.scroll;
+        assert_eq!((scroll.x, scroll.y), (1.0, 0.5), "the bar moves the picture elsewhere");
     }
 }
