@@ -11,6 +11,8 @@ mod common;
 #[cfg(test)]
 mod density;
 #[cfg(test)]
+mod features;
+#[cfg(test)]
 mod floors;
 #[cfg(test)]
 mod hostile;

@@ -14,6 +14,7 @@ use crate::scene::description::ToneOperator;
 use crate::session::{Phase, Renderer, Session};
 use crate::window::app::App;
 use crate::window::state::Remembered;
+use crate::window::views::View;
 use egui::{Key, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -109,10 +110,14 @@ impl Stage {
             Greys { n_jobs: Arc::clone(&n_jobs), n_passes: Arc::clone(&n_passes), refines };
         let session = Session::with_renderer(renderer, || ()).unwrap();
         let ctx = egui::Context::default();
-        let source = Source::File(scene_file(folder));
+        let path = scene_file(folder);
+        let mut scene = super::small_scene();
+        scene.render.samples = 4;
+        scene.tone_mapping.operator = ToneOperator::Linear;
+        std::fs::write(&path, crate::io::scene_file::write(&scene)).unwrap();
+        let source = Source::File(path);
         let app = App::with_session(&ctx, Remembered::default(), source, None, session).unwrap();
         let mut harness = harness_of(app, [700.0, 500.0], 1.0);
-        harness.state_mut().document.description.tone_mapping.operator = ToneOperator::Linear;
         wait_until(&mut harness, |app| app.picture_on_show().is_some());
         Self { harness, n_jobs, n_passes }
     }
@@ -182,10 +187,15 @@ fn a_drag_shows_every_finished_preview_and_never_black() {
 fn done_means_idle_in_every_view() {
     let folder = tempfile::tempdir().unwrap();
     let mut stage = Stage::new(folder.path(), true);
-    for key in [Key::Num1, Key::Num4, Key::Num6, Key::Num7] {
+    for (key, view) in
+        [(Key::Num1, None), (Key::Num4, Some(View::Depth)), (Key::Num7, Some(View::Samples))]
+    {
         stage.harness.key_press(key);
         stage.harness.run_steps(3);
-        wait_until(&mut stage.harness, |app| app.work.session.status().phase == Phase::Done);
+        wait_until(&mut stage.harness, |app| {
+            app.work.session.status().phase == Phase::Done
+                && app.picture.legend().map(|legend| legend.view) == view
+        });
         stage.harness.run_steps(40);
         let n_passes = stage.n_passes.load(Ordering::SeqCst);
         let frame = stage.harness.state().work.session.latest().unwrap();
@@ -204,7 +214,7 @@ fn nothing_of_the_display_ever_restarts() {
     let folder = tempfile::tempdir().unwrap();
     let mut stage = Stage::new(folder.path(), true);
     wait_until(&mut stage.harness, |app| app.work.session.status().phase == Phase::Done);
-    let n_jobs = stage.n_jobs();
+    let (n_jobs, before) = (stage.n_jobs(), stage.harness.state().work.session.status());
     let picture = stage.harness.get_by_role_and_label(Role::Canvas, "Picture").rect();
     stage.harness.hover_at(picture.center());
     let views =
@@ -220,7 +230,8 @@ fn nothing_of_the_display_ever_restarts() {
     interface.display.zoom = crate::window::viewport::Zoom::Double;
     stage.harness.run_steps(4);
     let status = stage.harness.state().work.session.status();
-    assert_eq!((status.generation, status.samples), (1, 4), "rendered again");
+    assert_eq!(status.generation, before.generation, "rendered again");
+    assert_eq!(status.samples, 4, "samples were lost");
     assert_eq!(stage.n_jobs(), n_jobs, "another job was begun");
     let exposure = stage.harness.state().document.description.tone_mapping.exposure;
     assert_eq!(exposure, 0.5, "the keys do nothing");

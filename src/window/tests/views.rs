@@ -78,13 +78,15 @@ fn the_loupe_tells_all_that_is_known_of_a_pixel() {
     wait_until(&mut harness, is_done);
     harness.hover_at(picture(&harness).center());
     harness.run_steps(2);
+    let count = |harness: &Harness<'_, App>, told: &str| harness.query_all_by_label(told).count();
+    let before = ["ball", "glaze"].map(|told| count(&harness, told));
     harness.key_press(Key::L);
     wait_until(&mut harness, |app| {
         app.work.session.latest().is_some_and(|frame| frame.maps.features.is_some())
     });
     assert!(harness.query_by_label("Loupe").is_some(), "no loupe");
-    for told in ["ball", "glaze"] {
-        assert!(harness.query_by_label(told).is_some(), "{told} is not told");
+    for (told, before) in ["ball", "glaze"].into_iter().zip(before) {
+        assert_eq!(count(&harness, told), before + 1, "{told} is not told");
     }
     // The ball's front is its radius before the target, which is in focus.
     let distance = 26.0_f64.sqrt();
@@ -148,7 +150,10 @@ fn pictures_are_rendered_in_the_pixels_of_the_screen() {
         let source = Source::File(path.clone());
         let app = App::new(&ctx, Remembered::default(), source, None).unwrap();
         let mut harness = harness_of(app, [900.0, 600.0], per_point);
-        wait_until(&mut harness, is_done);
+        wait_until(&mut harness, |app| {
+            let image = app.picture_on_show().map(|image| image.size[0]);
+            is_done(app) && image == Some(app.viewport.size[0] as usize)
+        });
         let rect = picture(&harness);
         let app = harness.state();
         let expected = [rect.width() * per_point, rect.height() * per_point].map(f32::round);
