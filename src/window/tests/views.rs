@@ -149,7 +149,7 @@ fn pictures_are_rendered_in_the_pixels_of_the_screen() {
         let ctx = egui::Context::default();
         let source = Source::File(path.clone());
         let app = App::new(&ctx, Remembered::default(), source, None).unwrap();
-        let mut harness = harness_of(app, [900.0, 600.0], per_point);
+        let mut harness = harness_of(app, [700.0, 460.0], per_point);
         wait_until(&mut harness, |app| {
             let image = app.picture_on_show().map(|image| image.size[0]);
             is_done(app) && image == Some(app.viewport.size[0] as usize)
