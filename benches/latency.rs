@@ -8,8 +8,13 @@
 //! Drives the session as the window does, at 1280 x 720, with one render thread less than there are
 //! processors: light size, roughness, aperture and camera of the final scene and of a mesh of
 //! 100 000 triangles, one edit after the other. One JSON line for each scene and kind of edit, in
-//! milliseconds; and the cost of tone mapping one picture.
+//! milliseconds; the cost of tone mapping one picture; and, on Linux, what the window's own thread
+//! spends on its frames.
 #![expect(clippy::print_stdout, reason = "a bench prints its figures")]
+
+#[cfg(all(feature = "window", target_os = "linux"))]
+#[path = "latency/window.rs"]
+mod window;
 
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
@@ -79,6 +84,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     tone_mapping();
+    #[cfg(all(feature = "window", target_os = "linux"))]
+    window::measure()?;
     Ok(())
 }
 
@@ -111,32 +118,41 @@ fn quantiles(times: &mut [f64]) -> String {
 }
 
 /// A rippled sphere of 100 000 triangles on a ground under a soft light.
+const SPHERE_SCENE: &str = r#"
+[camera]
+eye = [1.5, 1.2, 3.2]
+target = [0.0, 0.0, 0.0]
+aperture_radius = 0.03
+[[materials]]
+name = "glaze"
+diffuse = [0.3, 0.4, 0.6]
+specular = [0.2, 0.2, 0.2]
+[[lights]]
+type = "rectangle"
+position = [2.0, 4.0, 3.0]
+size = 1.0
+power = [200.0, 200.0, 200.0]
+[[objects]]
+type = "mesh"
+file = "sphere.obj"
+normals = "flat"
+material = "glaze"
+[[objects]]
+type = "plane"
+point = [0.0, -1.1, 0.0]
+normal = [0.0, 1.0, 0.0]
+"#;
+
 fn sphere_scene() -> Result<(SceneDescription, Assets), Box<dyn std::error::Error>> {
-    let text = r#"
-        [camera]
-        eye = [1.5, 1.2, 3.2]
-        target = [0.0, 0.0, 0.0]
-        aperture_radius = 0.03
-        [[materials]]
-        name = "glaze"
-        diffuse = [0.3, 0.4, 0.6]
-        specular = [0.2, 0.2, 0.2]
-        [[lights]]
-        type = "rectangle"
-        position = [2.0, 4.0, 3.0]
-        size = 1.0
-        power = [200.0, 200.0, 200.0]
-        [[objects]]
-        type = "mesh"
-        file = "sphere.obj"
-        normals = "flat"
-        material = "glaze"
-        [[objects]]
-        type = "plane"
-        point = [0.0, -1.1, 0.0]
-        normal = [0.0, 1.0, 0.0]
-    "#;
-    let description = scene_file::parse(text, &[])?;
+    let description = scene_file::parse(SPHERE_SCENE, &[])?;
+    let key = MeshKey::of(&description.objects[0]).ok_or("the mesh has a file")?;
+    let asset = MeshAsset { traced: Arc::new(TracedMesh::new(sphere())), slots: Vec::new() };
+    let mut assets = Assets::default();
+    assets.meshes.insert(key, Arc::new(asset));
+    Ok((description, assets))
+}
+
+fn sphere() -> Mesh {
     let (rows, columns) = (225_u32, 224_u32);
     let mut mesh = Mesh::default();
     for row in 0..=rows {
@@ -156,11 +172,7 @@ fn sphere_scene() -> Result<(SceneDescription, Assets), Box<dyn std::error::Erro
             mesh.triangles.push([a + 1, b + 1, b]);
         }
     }
-    let key = MeshKey::of(&description.objects[0]).ok_or("the mesh has a file")?;
-    let asset = MeshAsset { traced: Arc::new(TracedMesh::new(mesh)), slots: Vec::new() };
-    let mut assets = Assets::default();
-    assets.meshes.insert(key, Arc::new(asset));
-    Ok((description, assets))
+    mesh
 }
 
 fn tone_mapping() {

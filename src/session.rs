@@ -49,6 +49,23 @@ impl Goal {
         let is_late = n_samples > 0 && self.seconds.is_some_and(|limit| seconds >= limit);
         n_samples >= self.samples || is_clean || is_late
     }
+
+    /// Estimate of the seconds to the nearest of the goals at the speed so far; noise falls with
+    /// the square root of samples. `None` before the first sample.
+    pub fn seconds_left(&self, film: &Film, seconds: f64) -> Option<f64> {
+        let n_samples = f64::from(film.n_samples());
+        if n_samples == 0.0 {
+            return None;
+        }
+        let by_samples = seconds * (f64::from(self.samples) / n_samples - 1.0);
+        let by_time = self.seconds.map(|limit| limit - seconds);
+        let by_noise = self
+            .noise_percent
+            .zip(film.noise_percent())
+            .map(|(goal, now)| seconds * ((now / goal).powi(2) - 1.0));
+        let nearest = [by_time, by_noise].into_iter().flatten().fold(by_samples, f64::min);
+        Some(nearest.max(0.0))
+    }
 }
 
 /// A published picture. Never changes.

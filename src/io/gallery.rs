@@ -77,6 +77,39 @@ pub fn file(path: &str) -> Option<&'static [u8]> {
     FILES.iter().find(|(name, _)| *name == path).map(|(_, bytes)| *bytes)
 }
 
+/// Width and height in pixels of the pictures of the gallery.
+pub const PICTURE_SIZE: (u32, u32) = (480, 270);
+
+macro_rules! pictures {
+    ($($name:literal),+ $(,)?) => {
+        &[$((
+            $name,
+            include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/gallery/", $name, ".png")),
+        )),+]
+    };
+}
+
+/// The picture of every scene, as the documentation shows it.
+static PICTURES: &[(&str, &[u8])] = pictures![
+    "antialiasing",
+    "cube-flat-and-smooth",
+    "depth-of-field",
+    "final",
+    "glass-and-mirrors",
+    "kd-tree",
+    "noise-marble",
+    "noise-spotted",
+    "pyramid",
+    "sky",
+    "soft-shadows",
+    "ward-ceramic",
+];
+
+/// A PNG of [`PICTURE_SIZE`] that shows a gallery scene.
+pub fn picture(name: &str) -> Option<&'static [u8]> {
+    PICTURES.iter().find(|(known, _)| *known == name).map(|(_, bytes)| *bytes)
+}
+
 /// The text of a gallery scene.
 pub fn scene_text(name: &str) -> Option<&'static str> {
     std::str::from_utf8(file(&format!("scenes/{name}.toml"))?).ok()

@@ -5,12 +5,13 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use image::{ExtendedColorType, ImageEncoder};
+use serde::{Deserialize, Serialize};
 
 use crate::color::Picture;
 use crate::io::printable_path;
 
 /// The format of a picture file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum OutputFormat {
     /// 8-bit sRGB, tone-mapped, with its scene inside.
     Png,
@@ -21,15 +22,19 @@ pub enum OutputFormat {
 }
 
 impl OutputFormat {
+    /// The ending of its files, without the dot.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Png => "png",
+            Self::Exr => "exr",
+            Self::Hdr => "hdr",
+        }
+    }
+
     /// The format that a file's ending asks for.
     pub fn of(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-        match ending.as_str() {
-            "png" => Some(Self::Png),
-            "exr" => Some(Self::Exr),
-            "hdr" => Some(Self::Hdr),
-            _ => None,
-        }
+        [Self::Png, Self::Exr, Self::Hdr].into_iter().find(|format| format.ending() == ending)
     }
 }
 

@@ -333,7 +333,7 @@ impl<R: Renderer> Driver<'_, R> {
             status.noise_percent = work.film.noise_percent();
             status.n_invalid = work.n_invalid;
             status.rays_per_second = self.rays_per_second;
-            status.seconds_left = seconds_left(&goal, work);
+            status.seconds_left = goal.seconds_left(&work.film, work.seconds);
         });
         let is_last = is_reached(&goal, work);
         let is_first = before == 0;
@@ -397,20 +397,4 @@ impl<W> Work<W> {
 
 fn is_reached<W>(goal: &Goal, work: &Work<W>) -> bool {
     goal.is_reached(&work.film, work.seconds)
-}
-
-/// To the nearest of the goals, at the speed so far; noise falls with the square root of samples.
-fn seconds_left<W>(goal: &Goal, work: &Work<W>) -> Option<f64> {
-    let n_samples = f64::from(work.film.n_samples());
-    if n_samples == 0.0 {
-        return None;
-    }
-    let by_samples = work.seconds * (f64::from(goal.samples) / n_samples - 1.0);
-    let by_time = goal.seconds.map(|seconds| seconds - work.seconds);
-    let by_noise = goal
-        .noise_percent
-        .zip(work.film.noise_percent())
-        .map(|(goal, now)| work.seconds * ((now / goal).powi(2) - 1.0));
-    let nearest = [by_time, by_noise].into_iter().flatten().fold(by_samples, f64::min);
-    Some(nearest.max(0.0))
 }

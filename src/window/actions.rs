@@ -3,9 +3,15 @@
 use super::app::App;
 use super::compare::{CompareChoice, Pinned};
 use super::dialogs::{Purpose, UnsavedAnswer, unsaved_question};
+use super::export_dialog::{ExportChoice, ExportFacts, export_ui};
 use super::files::Pending;
+use super::help::{HelpChoice, help_ui};
 use super::keys::Action;
+use super::keys_file;
+use super::start::StartChoice;
 use super::toolbar::ToolbarChoice;
+use crate::io::gallery::GALLERY;
+use crate::io::output::create_file;
 use crate::io::scene_file;
 use crate::loader::Source;
 use crate::scene::description::{SceneDescription, ToneOperator};
@@ -20,6 +26,19 @@ impl App {
         scene: &mut SceneDescription,
         action: Action,
     ) {
+        let needs_scene = !matches!(
+            action,
+            Action::Open
+                | Action::Gallery
+                | Action::TogglePanel
+                | Action::FullScreen
+                | Action::Help
+                | Action::Cancel
+        );
+        if needs_scene && !self.files.has_scene {
+            self.toasts.say("there is no scene yet; open one");
+            return;
+        }
         match action {
             Action::FrameAll => self.frame_all(scene),
             Action::HomeCamera => {
@@ -38,9 +57,15 @@ impl App {
             }
             Action::ToggleLens => self.toggle_lens(scene),
             Action::Snapshot => self.snapshot(),
+            Action::RenderPicture => self.interface.export_shown = !self.interface.export_shown,
             Action::Save => self.save_scene(ctx),
             Action::SaveAs => self.files.ask_where_to_save(ctx, &mut self.dialogs),
             Action::Open => self.dialogs.ask(ctx, Purpose::Open, ""),
+            Action::Gallery => self.interface.start_shown = !self.interface.start_shown,
+            Action::CloseScene => {
+                self.ask_to_close_scene(ctx);
+                scene.clone_from(&self.document.description);
+            }
             Action::CopyImage => self.copy_picture(ctx),
             Action::Undo => {
                 if let Some(step) = self.document.undo() {
@@ -81,11 +106,6 @@ impl App {
     ) {
         match choice {
             ToolbarChoice::Do(action) => self.do_action(ctx, scene, action),
-            ToolbarChoice::Gallery(index) => {
-                if let Some(entry) = crate::io::gallery::GALLERY.get(index) {
-                    self.open(Source::Gallery(entry.name));
-                }
-            }
             ToolbarChoice::File(path) => self.open(Source::File(path)),
             ToolbarChoice::PathBox => self.dialogs.type_path(Purpose::Open, ""),
         }
@@ -100,12 +120,78 @@ impl App {
         }
     }
 
+    /// Does what was chosen on the start page.
+    pub(super) fn do_start(&mut self, ctx: &egui::Context, choice: StartChoice) {
+        match choice {
+            StartChoice::Open => self.dialogs.ask(ctx, Purpose::Open, ""),
+            StartChoice::File(path) => self.open(Source::File(path)),
+            StartChoice::Back => self.interface.start_shown = false,
+            StartChoice::Gallery(index) => {
+                if let Some(entry) = GALLERY.get(index) {
+                    self.open(Source::Gallery(entry.name));
+                }
+            }
+        }
+    }
+
+    /// Shows the box that renders a picture, where it is wanted, and does what is chosen in it.
+    pub(super) fn export_box(&mut self, ctx: &egui::Context) {
+        if !self.interface.export_shown {
+            return;
+        }
+        let facts = ExportFacts {
+            live: self.viewport.size,
+            samples: self.document.description.render.samples,
+            title: &self.files.title,
+            progress: self.exporter.progress(),
+        };
+        match export_ui(ctx, &mut self.interface.export, &facts) {
+            None => {}
+            Some(ExportChoice::Render) => self.export_wanted = true,
+            Some(ExportChoice::Stop) => self.exporter.stop(),
+            Some(ExportChoice::Close) => self.interface.export_shown = false,
+            Some(ExportChoice::ChooseFolder) => {
+                let folder = self.interface.export.folder().display().to_string();
+                self.dialogs.ask(ctx, Purpose::PictureFolder, &folder);
+            }
+        }
+    }
+
+    /// Shows the list of keys, where it is wanted.
+    pub(super) fn help_overlay(&mut self, ctx: &egui::Context) {
+        if !self.interface.help_shown {
+            return;
+        }
+        match help_ui(ctx, &self.keys, self.keys_file.as_deref()) {
+            None => {}
+            Some(HelpChoice::Close) => self.interface.help_shown = false,
+            Some(HelpChoice::MakeKeysFile) => {
+                let Some(path) = self.keys_file.clone() else { return };
+                match create_file(&path, keys_file::template().as_bytes()) {
+                    Ok(()) => self.toasts.say(format!(
+                        "{} is there; edit it and start Penumbra again",
+                        path.display()
+                    )),
+                    Err(error) => self.toasts.fail(error.to_string()),
+                }
+            }
+        }
+    }
+
+    fn ask_to_close_scene(&mut self, ctx: &egui::Context) {
+        self.files.pending = Some(Pending::CloseScene);
+        if !self.document.is_dirty() {
+            self.go_on(ctx);
+        }
+    }
+
     /// Shows the box for a path and takes what the dialogs answered.
     pub(super) fn ask_for_paths(&mut self, ctx: &egui::Context) {
         match self.dialogs.take_path(ctx) {
             None => {}
             Some((Purpose::Open, path)) => self.open(Source::File(path)),
             Some((Purpose::SaveScene, path)) => self.save_to(ctx, path),
+            Some((Purpose::PictureFolder, path)) => self.interface.export.folder = Some(path),
         }
     }
 
@@ -139,6 +225,7 @@ impl App {
         match self.files.pending.take() {
             None => {}
             Some(Pending::Open(source)) => self.files.open(source),
+            Some(Pending::CloseScene) => self.close_scene(ctx),
             Some(Pending::Close) => {
                 self.files.close_confirmed = true;
                 ctx.send_viewport_cmd(ViewportCommand::Close);
@@ -153,7 +240,9 @@ impl App {
             || self.dialogs.dismiss()
             || self.stop_asking()
             || self.files.cancel_loading()
-            || self.toasts.dismiss();
+            || self.toasts.dismiss()
+            || std::mem::take(&mut self.interface.export_shown)
+            || (self.files.has_scene && std::mem::take(&mut self.interface.start_shown));
         let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
         if !closed && full {
             ctx.send_viewport_cmd(ViewportCommand::Fullscreen(false));

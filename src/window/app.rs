@@ -3,19 +3,22 @@
 
 use super::compare::Pinned;
 use super::dialogs::PathDialogs;
+use super::export::Exporter;
 use super::files::FileWork;
 use super::gesture::Gesture;
+use super::keys::Keys;
+use super::keys_file;
 use super::lens_overlay::LensOverlay;
 use super::picture::PictureDisplay;
 use super::probe::Probe;
 use super::recovery::Recovery;
+use super::start::Thumbnails;
 use super::state::{InterfaceState, Remembered};
 use super::swatches::Swatches;
 use super::toasts::Toasts;
 use super::viewport::Click;
 use super::watch::Watcher;
 use super::work::RenderWork;
-use super::{help, keys};
 use crate::document::Document;
 use crate::io::scene_file;
 use crate::loader::{Loader, Source};
@@ -41,6 +44,13 @@ pub(super) struct App {
     pub(super) gesture: Gesture,
     /// Whether the next full picture is written to a file.
     pub(super) snapshot_wanted: bool,
+    /// Whether a picture of a size of its own is to be rendered.
+    pub(super) export_wanted: bool,
+    pub(super) exporter: Exporter,
+    pub(super) thumbnails: Thumbnails,
+    pub(super) keys: Keys,
+    /// Where keys of one's own are read from, if there is such a place.
+    pub(super) keys_file: Option<PathBuf>,
     /// The picture that the live one is compared with.
     pub(super) pinned: Option<Pinned>,
     pub(super) probe: Probe,
@@ -100,16 +110,29 @@ impl App {
         let mut files = FileWork::new(Loader::new(wake())?);
         files.open(first);
         let empty = empty_scene();
+        let keys_file = own_folder.as_ref().map(|folder| folder.join(keys_file::NAME));
+        let (keys, complaints) = keys_file.as_deref().map(keys_file::load).unwrap_or_default();
+        let mut toasts = Toasts::default();
+        if let (false, Some(path)) = (complaints.is_empty(), &keys_file) {
+            toasts.fail(format!("{}\n{}", path.display(), complaints.join("\n")));
+        }
+        let interface = remembered.restore();
+        ctx.set_theme(interface.theme);
         Ok(Self {
             home_camera: empty.camera.clone(),
             document: Document::new(empty, None),
-            interface: remembered.restore(),
+            interface,
             files,
             work: RenderWork::new(session),
             dialogs: PathDialogs::default(),
-            toasts: Toasts::default(),
+            toasts,
+            keys,
+            keys_file,
             awaited_click: None,
             snapshot_wanted: false,
+            export_wanted: false,
+            exporter: Exporter::default(),
+            thumbnails: Thumbnails::new(wake())?,
             pinned: None,
             probe: Probe::default(),
             lens_overlay: LensOverlay::new(wake())?,
@@ -183,9 +206,11 @@ impl App {
                 Err(missing) => self.load_missing(missing),
             }
         }
-        self.work.session.set_paused(self.interface.is_paused);
+        self.start_export(ctx);
+        self.work.session.set_paused(self.interface.is_paused || !self.files.has_scene);
         self.work.session.want(self.wanted(ctx));
-        if let Some(frame) = self.work.session.latest() {
+        let frame = self.work.session.latest().filter(|_| self.files.has_scene);
+        if let Some(frame) = frame {
             let view = self.interface.display.view;
             self.picture.show(&frame, view, &self.document.description.tone_mapping);
             if frame.scale == 1 {
@@ -201,6 +226,7 @@ impl App {
     /// Takes what other threads have finished; also while the window is hidden.
     pub(super) fn take_news(&mut self, ctx: &egui::Context) {
         self.take_results(ctx);
+        self.take_export(ctx);
         self.reload_if_changed();
         self.keep_copy(ctx);
         self.guard_close(ctx);
@@ -211,16 +237,15 @@ impl App {
         let ctx = ui.ctx().clone();
         self.gesture.update(&ctx);
         let mut scene = self.document.description.clone();
-        for action in keys::pressed(&ctx, self.viewport.flying) {
+        for action in self.keys.pressed(&ctx, self.viewport.flying) {
             self.do_action(&ctx, &mut scene, action);
         }
         self.take_dropped_file(&ctx);
         self.layout_ui(ui, &mut scene);
         self.take_pick(&mut scene);
         self.render(&ctx, scene);
-        if self.interface.help_shown {
-            help::help_ui(&ctx, &mut self.interface.help_shown);
-        }
+        self.export_box(&ctx);
+        self.help_overlay(&ctx);
         self.offer_copy(&ctx);
         self.ask_for_paths(&ctx);
         self.ask_about_unsaved(&ctx);
@@ -280,7 +305,7 @@ fn edit_label(before: &SceneDescription, after: &SceneDescription) -> &'static s
 }
 
 /// What is edited until the first scene is there.
-fn empty_scene() -> SceneDescription {
+pub(super) fn empty_scene() -> SceneDescription {
     SceneDescription {
         render: Default::default(),
         camera: CameraDescription {

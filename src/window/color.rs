@@ -1,7 +1,7 @@
 //! Editing colours: linear RGB in the description, shown through the sRGB transfer.
 
 use super::theme::ROW_HEIGHT;
-use super::widgets::{Figure, number_box, parameter_menu, row};
+use super::widgets::{Figure, number_box, parameter, row};
 use crate::scene::description::Triple;
 use egui::ecolor::Hsva;
 use egui::{Color32, Rgba, Sense, Stroke, StrokeKind, Ui, Vec2};
@@ -43,7 +43,7 @@ pub(super) fn swatch(
     ui.painter().rect(rect, 4.0, display_color(value), line, StrokeKind::Inside);
     let shown = value.map(|channel| format!("{channel:.3}")).join("  ");
     let response = response.on_hover_text(format!("{help}\nlinear RGB {shown}").trim().to_owned());
-    let _ = parameter_menu(&response, path, false);
+    parameter(&response, label, path);
     egui::Popup::from_toggle_button_response(&response)
         .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside)
         .accessible_name(format!("{label}: colour"))

@@ -1,9 +1,11 @@
 //! Asking for a path: the system's dialog off the window's thread, a box for typing where there is
 //! none, and the question before unsaved edits would be lost.
 
+use super::theme::modal_frame;
 use crate::threads;
 use egui::{Align2, Id, Key, RichText, Vec2};
 use std::path::PathBuf;
+use std::pin::Pin;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
@@ -17,6 +19,8 @@ pub(super) enum Purpose {
     Open,
     /// A place for the scene file.
     SaveScene,
+    /// The folder of rendered pictures.
+    PictureFolder,
 }
 
 /// The system's dialog while it is open, and the box for typing.
@@ -48,26 +52,22 @@ impl PathDialogs {
         let (sender, answer) = channel();
         let ctx = ctx.clone();
         // The future is made here, where macOS wants it, and waited for elsewhere.
-        let started = match purpose {
+        let chosen: Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match purpose {
             Purpose::Open => {
                 let filter = ["toml", "obj", "png"];
-                let chosen = dialog.add_filter("Scenes, meshes, snapshots", &filter).pick_file();
-                threads::spawn("file dialog", move || {
-                    let path = pollster::block_on(chosen).map(|file| file.path().to_owned());
-                    let _ = sender.send(path);
-                    ctx.request_repaint();
-                })
+                Box::pin(dialog.add_filter("Scenes, meshes, snapshots", &filter).pick_file())
             }
             Purpose::SaveScene => {
-                let chosen =
-                    dialog.add_filter("Scene", &["toml"]).set_file_name(suggestion).save_file();
-                threads::spawn("file dialog", move || {
-                    let path = pollster::block_on(chosen).map(|file| file.path().to_owned());
-                    let _ = sender.send(path);
-                    ctx.request_repaint();
-                })
+                let dialog = dialog.add_filter("Scene", &["toml"]).set_file_name(suggestion);
+                Box::pin(dialog.save_file())
             }
+            Purpose::PictureFolder => Box::pin(dialog.set_directory(suggestion).pick_folder()),
         };
+        let started = threads::spawn("file dialog", move || {
+            let path = pollster::block_on(chosen).map(|file| file.path().to_owned());
+            let _ = sender.send(path);
+            ctx.request_repaint();
+        });
         match started {
             Ok(_) => self.asking = Some(Asking { purpose, answer, since: Instant::now() }),
             Err(_) => self.type_path(purpose, suggestion),
@@ -126,6 +126,7 @@ fn path_box(ctx: &egui::Context, typing: &mut Typing) -> BoxAnswer {
     let (title, button) = match typing.purpose {
         Purpose::Open => ("Open a scene, a mesh or a snapshot", "Open"),
         Purpose::SaveScene => ("Save the scene as", "Save"),
+        Purpose::PictureFolder => ("Folder for pictures", "Choose"),
     };
     egui::Area::new(Id::unique("path box"))
         .order(egui::Order::Foreground)
@@ -138,7 +139,11 @@ fn path_box(ctx: &egui::Context, typing: &mut Typing) -> BoxAnswer {
                     ui.add_space(4.0);
                     ui.horizontal(|ui| {
                         let field = egui::TextEdit::singleline(&mut typing.text)
-                            .hint_text("path of a file")
+                            .hint_text(if typing.purpose == Purpose::PictureFolder {
+                                "path of a folder"
+                            } else {
+                                "path of a file"
+                            })
                             .desired_width(380.0);
                         let response = ui.add(field).accessible_name("Path");
                         if typing.is_new {
@@ -179,7 +184,8 @@ pub(super) enum UnsavedAnswer {
 
 /// Asks what to do with unsaved edits of the scene of that name.
 pub(super) fn unsaved_question(ctx: &egui::Context, title: &str) -> Option<UnsavedAnswer> {
-    let modal = egui::Modal::new(Id::unique("unsaved")).show(ctx, |ui| {
+    let frame = modal_frame(&ctx.global_style());
+    let modal = egui::Modal::new(Id::unique("unsaved")).frame(frame).show(ctx, |ui| {
         ui.set_width(360.0);
         ui.heading(format!("Save the changes to {title}?"));
         ui.add_space(4.0);

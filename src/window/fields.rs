@@ -1,6 +1,6 @@
 //! A field for a line of text that counts once it is entered, not at every letter.
 
-use super::widgets::row;
+use super::widgets::{parameter, row};
 use egui::{Key, Ui};
 
 /// A named line with a text field. Gives back what was entered, where it differs from `value` and
@@ -10,6 +10,7 @@ pub(super) fn entered_text(
     label: &str,
     help: &str,
     hint: &str,
+    path: &str,
     value: &str,
 ) -> Option<String> {
     row(ui, label, help, |ui| {
@@ -22,6 +23,7 @@ pub(super) fn entered_text(
             .desired_width(ui.available_width() - 8.0);
         let response = ui.add(field).accessible_name(label);
         let response = if help.is_empty() { response } else { response.on_hover_text(help) };
+        parameter(&response, label, path);
         if response.has_focus() {
             ui.data_mut(|data| data.insert_temp(id, text));
             return None;

@@ -49,6 +49,8 @@ pub(super) struct FileWork {
 pub(super) enum Pending {
     /// Close the window.
     Close,
+    /// Close the scene and show the start page.
+    CloseScene,
     /// Open something else.
     Open(Source),
 }
@@ -102,6 +104,19 @@ impl FileWork {
         self.is_reloading = false;
         self.loading = Some(source.stem());
         self.loader.open(source);
+    }
+
+    /// Forgets the open scene and stops loading another.
+    pub(super) fn close_scene(&mut self) {
+        self.cancel_loading();
+        self.title = "untitled".to_owned();
+        self.scene_path = None;
+        self.folder = Folder::Gallery;
+        self.records.clear();
+        self.report.clear();
+        self.source = None;
+        self.missing = None;
+        self.has_scene = false;
     }
 
     /// Stops loading. False where nothing was being loaded.

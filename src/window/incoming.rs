@@ -1,6 +1,6 @@
 //! What comes back from the threads that work for the window, and from other programs.
 
-use super::app::App;
+use super::app::{App, empty_scene};
 use super::files::{Written, file_title};
 use super::panels::PickFor;
 use super::viewport::Click;
@@ -12,6 +12,9 @@ use crate::scene::resolve::ResolveError;
 use egui::ViewportCommand;
 use std::path::PathBuf;
 use std::sync::Arc;
+
+/// Lines of a load report that are told at once; the panel has them all.
+const MOST_REPORTED: usize = 3;
 
 impl App {
     /// Takes what the loader and the writers have finished.
@@ -116,11 +119,12 @@ impl App {
             }
         }
         if !report.is_empty() {
-            let n_lines = report.len();
-            let first = &report[0];
-            let more =
-                if n_lines > 1 { format!(" (and {} more)", n_lines - 1) } else { String::new() };
-            self.toasts.say(format!("{first}{more}"));
+            let mut told =
+                report.iter().take(MOST_REPORTED).cloned().collect::<Vec<_>>().join("\n");
+            if MOST_REPORTED < report.len() {
+                told += &format!("\nand {} more, listed under Scene", report.len() - MOST_REPORTED);
+            }
+            self.toasts.warn(told);
         }
         self.files.report = report;
         self.home_camera = description.camera.clone();
@@ -132,6 +136,22 @@ impl App {
         self.gesture.next();
         self.watch_files();
         ctx.send_viewport_cmd(ViewportCommand::Title(format!("{} – Penumbra", self.files.title)));
+    }
+
+    /// Closes the scene and shows the start page.
+    pub(super) fn close_scene(&mut self, ctx: &egui::Context) {
+        self.files.close_scene();
+        self.interface.forget_scene();
+        self.interface.start_shown = true;
+        self.interface.export_shown = false;
+        self.pinned = None;
+        self.awaited_click = None;
+        self.snapshot_wanted = false;
+        self.work.set_assets(Arc::default());
+        self.document = Document::new(empty_scene(), None);
+        self.gesture.next();
+        self.watch_files();
+        ctx.send_viewport_cmd(ViewportCommand::Title("Penumbra".to_owned()));
     }
 
     /// Takes the files that an edit made necessary; the edit itself is in the document.

@@ -29,14 +29,20 @@ pub(super) enum Action {
     NextOperator,
     /// Closes the lens, or opens it as it was.
     ToggleLens,
-    /// Writes a picture file.
+    /// Writes the picture on show to a file.
     Snapshot,
+    /// Shows or hides the box that renders a picture of any size to a file.
+    RenderPicture,
     /// Saves the scene where it came from.
     Save,
     /// Saves the scene under another name.
     SaveAs,
     /// Asks for a file to open.
     Open,
+    /// Shows the start page with the gallery, or goes back to the scene.
+    Gallery,
+    /// Closes the scene.
+    CloseScene,
     /// Puts the picture on the clipboard.
     CopyImage,
     /// Takes the last edit back.
@@ -61,6 +67,20 @@ pub(super) enum Action {
     Cancel,
 }
 
+impl Action {
+    /// As the file of keys calls it: `frame-all`.
+    pub(super) fn name(self) -> String {
+        let mut name = String::new();
+        for c in format!("{self:?}").chars().filter(char::is_ascii_alphanumeric) {
+            if c.is_ascii_uppercase() && !name.is_empty() {
+                name.push('-');
+            }
+            name.push(c.to_ascii_lowercase());
+        }
+        name
+    }
+}
+
 /// A key with its modifiers, and what it does.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Binding {
@@ -79,7 +99,8 @@ const COMMAND_SHIFT: Modifiers = Modifiers { shift: true, command: true, ..Modif
 /// One line of the help for the keys of all views.
 const VIEWS: &str = "picture, albedo, normals, depth, blur, cost, samples, noise";
 
-/// Every key the window listens to. Where one action has several, the first is named in tooltips.
+/// Every key the window listens to, where the file of keys says nothing else. Where one action has
+/// several, the first is named in tooltips.
 pub(super) const BINDINGS: &[Binding] = &[
     key(Action::FrameAll, Modifiers::NONE, Key::Home, "frame all"),
     key(Action::HomeCamera, Modifiers::NONE, Key::Backspace, "back to the scene's own camera"),
@@ -92,10 +113,13 @@ pub(super) const BINDINGS: &[Binding] = &[
     key(Action::Darker, Modifiers::SHIFT, Key::E, "half a stop darker"),
     key(Action::NextOperator, Modifiers::NONE, Key::T, "next tone curve"),
     key(Action::ToggleLens, Modifiers::NONE, Key::D, "lens open or closed"),
-    key(Action::Snapshot, Modifiers::NONE, Key::F12, "snapshot"),
+    key(Action::Snapshot, Modifiers::NONE, Key::F12, "snapshot of the picture as it is"),
+    key(Action::RenderPicture, Modifiers::SHIFT, Key::F12, "render a picture to a file…"),
     key(Action::Save, Modifiers::COMMAND, Key::S, "save the scene"),
     key(Action::SaveAs, COMMAND_SHIFT, Key::S, "save the scene as…"),
     key(Action::Open, Modifiers::COMMAND, Key::O, "open…"),
+    key(Action::Gallery, Modifiers::COMMAND, Key::G, "gallery and recent files"),
+    key(Action::CloseScene, Modifiers::COMMAND, Key::W, "close the scene"),
     key(Action::CopyImage, Modifiers::COMMAND, Key::C, "copy the picture"),
     key(Action::Undo, Modifiers::COMMAND, Key::Z, "undo"),
     key(Action::Redo, COMMAND_SHIFT, Key::Z, "redo"),
@@ -130,57 +154,92 @@ pub(super) const MOTIONS: &[(&str, &str)] = &[
     ("drop a file", "open it"),
 ];
 
-/// The actions whose keys were pressed, taken out of the input. Keys alone do nothing while a
-/// field has the focus; with Ctrl they do, but for those that text fields use themselves. While
-/// the camera is `flying`, letters belong to it.
-pub(super) fn pressed(ctx: &egui::Context, flying: bool) -> Vec<Action> {
-    let typing = ctx.memory(|memory| memory.focused().is_some());
-    let mut actions = Vec::new();
-    ctx.input_mut(|input| {
-        // Those with more modifiers first: Ctrl+Shift+Z is not Ctrl+Z.
-        for binding in most_specific_first() {
-            let works_while_typing = match binding.action {
-                Action::Undo | Action::Redo | Action::CopyImage => false,
-                Action::Snapshot | Action::FullScreen => true,
-                _ => binding.modifiers.command,
-            };
-            if typing && !works_while_typing {
-                continue;
-            }
-            if flying && !binding.modifiers.command {
-                continue;
-            }
-            if binding.action == Action::CopyImage {
-                // The system's copy arrives as an event of its own, without a key.
-                let asked = |event: &egui::Event| matches!(event, egui::Event::Copy);
-                if input.events.iter().any(asked) {
+/// The keys in force.
+#[derive(Clone, Debug)]
+pub(super) struct Keys {
+    /// In the order of [`BINDINGS`]; where one action has several, the first is named in tooltips.
+    pub(super) bindings: Vec<Binding>,
+}
+
+impl Default for Keys {
+    fn default() -> Self {
+        Self { bindings: BINDINGS.to_vec() }
+    }
+}
+
+impl Keys {
+    /// The actions whose keys were pressed, taken out of the input. Keys alone do nothing while a
+    /// field has the focus; with Ctrl they do, but for those that text fields use themselves. While
+    /// the camera is `flying`, letters belong to it.
+    pub(super) fn pressed(&self, ctx: &egui::Context, flying: bool) -> Vec<Action> {
+        let typing = ctx.memory(|memory| memory.focused().is_some());
+        let mut actions = Vec::new();
+        ctx.input_mut(|input| {
+            // Those with more modifiers first: Ctrl+Shift+Z is not Ctrl+Z.
+            for binding in self.most_specific_first() {
+                let works_while_typing = match binding.action {
+                    Action::Undo | Action::Redo | Action::CopyImage => false,
+                    Action::Snapshot | Action::RenderPicture | Action::FullScreen => true,
+                    _ => binding.modifiers.command,
+                };
+                if typing && !works_while_typing {
+                    continue;
+                }
+                if flying && !binding.modifiers.command {
+                    continue;
+                }
+                if is_system_copy(binding) {
+                    // The system's copy arrives as an event of its own, without a key.
+                    let asked = |event: &egui::Event| matches!(event, egui::Event::Copy);
+                    if input.events.iter().any(asked) {
+                        actions.push(binding.action);
+                    }
+                }
+                if input.consume_key(binding.modifiers, binding.key) {
                     actions.push(binding.action);
                 }
             }
-            if input.consume_key(binding.modifiers, binding.key) {
-                actions.push(binding.action);
-            }
+        });
+        actions.dedup();
+        actions
+    }
+
+    /// Whether a key of an action is held down, and no field has the focus.
+    pub(super) fn is_held(&self, ctx: &egui::Context, action: Action) -> bool {
+        let typing = ctx.memory(|memory| memory.focused().is_some());
+        let mut bindings = self.bindings.iter().filter(|binding| binding.action == action);
+        !typing && ctx.input(|input| bindings.any(|binding| input.key_down(binding.key)))
+    }
+
+    /// The keys of an action as a person reads them: "Ctrl+Shift+S". Empty where it has none.
+    pub(super) fn shown(&self, action: Action) -> String {
+        let first = self.bindings.iter().find(|binding| binding.action == action);
+        first.map_or_else(String::new, keys_of)
+    }
+
+    /// A tooltip: what the button does, and its key.
+    pub(super) fn hint(&self, text: &str, action: Action) -> String {
+        match self.shown(action) {
+            keys if keys.is_empty() => text.to_owned(),
+            keys => format!("{text} ({keys})"),
         }
-    });
-    actions.dedup();
-    actions
+    }
+
+    fn most_specific_first(&self) -> impl Iterator<Item = &Binding> {
+        let n_modifiers = |binding: &Binding| {
+            let Modifiers { shift, command, ctrl, alt, .. } = binding.modifiers;
+            [shift, command, ctrl, alt].into_iter().filter(|held| *held).count()
+        };
+        let mut all: Vec<&Binding> = self.bindings.iter().collect();
+        all.sort_by_key(|binding| std::cmp::Reverse(n_modifiers(binding)));
+        all.into_iter()
+    }
 }
 
-/// Whether a key of an action is held down, and no field has the focus.
-pub(super) fn is_held(ctx: &egui::Context, action: Action) -> bool {
-    let typing = ctx.memory(|memory| memory.focused().is_some());
-    let mut bindings = BINDINGS.iter().filter(|binding| binding.action == action);
-    !typing && ctx.input(|input| bindings.any(|binding| input.key_down(binding.key)))
-}
-
-/// The keys of an action as a person reads them: "Ctrl+Shift+S". Empty where it has none.
-pub(super) fn shown(action: Action) -> String {
-    BINDINGS.iter().find(|binding| binding.action == action).map_or_else(String::new, keys_of)
-}
-
-/// A tooltip: what the button does, and its key.
-pub(super) fn hint(text: &str, action: Action) -> String {
-    format!("{text} ({})", shown(action))
+/// Whether the system turns this key into its own "copy".
+fn is_system_copy(binding: &Binding) -> bool {
+    let Modifiers { shift, command, alt, .. } = binding.modifiers;
+    binding.key == Key::C && command && !shift && !alt
 }
 
 /// The keys of one binding as a person reads them.
@@ -192,6 +251,9 @@ pub(super) fn keys_of(binding: &Binding) -> String {
     if binding.modifiers.shift {
         text.push_str("Shift+");
     }
+    if binding.modifiers.alt {
+        text.push_str("Alt+");
+    }
     text.push_str(binding.key.name());
     text
 }
@@ -200,22 +262,12 @@ const fn key(action: Action, modifiers: Modifiers, key: Key, does: &'static str)
     Binding { action, modifiers, key, does }
 }
 
-fn most_specific_first() -> impl Iterator<Item = &'static Binding> {
-    let n_modifiers = |binding: &Binding| {
-        let Modifiers { shift, command, ctrl, alt, .. } = binding.modifiers;
-        [shift, command, ctrl, alt].into_iter().filter(|held| *held).count()
-    };
-    let mut all: Vec<&Binding> = BINDINGS.iter().collect();
-    all.sort_by_key(|binding| std::cmp::Reverse(n_modifiers(binding)));
-    all.into_iter()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn press(key: Key, modifiers: Modifiers) -> Vec<Action> {
-        let ctx = egui::Context::default();
+        let (ctx, keys) = (egui::Context::default(), Keys::default());
         let mut input = egui::RawInput::default();
         input.events.push(egui::Event::ModifiersChanged(modifiers));
         input.events.push(egui::Event::Key {
@@ -226,7 +278,7 @@ mod tests {
             modifiers,
         });
         let mut actions = Vec::new();
-        let mut output = ctx.run_ui(input, |ui| actions.extend(pressed(ui.ctx(), false)));
+        let mut output = ctx.run_ui(input, |ui| actions.extend(keys.pressed(ui.ctx(), false)));
         output.textures_delta.clear();
         actions
     }
@@ -254,7 +306,8 @@ mod tests {
 
     #[test]
     fn keys_read_as_people_say_them() {
-        assert_eq!(shown(Action::SaveAs), "Ctrl+Shift+S", "modifiers in another order");
-        assert_eq!(shown(Action::Snapshot), "F12", "F12 is named differently");
+        let keys = Keys::default();
+        assert_eq!(keys.shown(Action::SaveAs), "Ctrl+Shift+S", "modifiers in another order");
+        assert_eq!(keys.shown(Action::Snapshot), "F12", "F12 is named differently");
     }
 }

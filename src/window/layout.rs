@@ -2,17 +2,18 @@
 
 use super::app::{App, ViewportFacts};
 use super::handles::lights_in_picture;
-use super::keys::{self, Action};
+use super::keys::Action;
 use super::loupe::{LoupeFacts, loupe_ui};
-use super::panels::{self, RenderFacts};
+use super::panels::{self, Convergence, RenderFacts};
 use super::probe::described;
+use super::start::start_ui;
 use super::status::{PixelUnderCursor, StatusLine, Work, status_ui};
 use super::toolbar::{ToolbarChoice, ToolbarFacts, toolbar_ui};
 use super::viewport::{Click, ViewportOutput, physical_size, viewport_ui};
 use super::views::legend_ui;
+use super::widgets::take_reset;
 use super::work::picture_size;
 use crate::geometry::{AcceleratorKind, TreeStatistics};
-use crate::io::gallery::GALLERY;
 use crate::scene::description::SceneDescription;
 use crate::session::{Frame, Phase};
 use egui::{Margin, Panel, Rect, Ui};
@@ -23,9 +24,9 @@ impl App {
         let frame = self.work.session.latest();
         let chosen = self.toolbar(ui, scene);
         self.status_bar(ui, frame.as_deref());
-        let panel_shown = self.interface.panel_shown;
+        let panel_shown = self.interface.panel_shown && !self.interface.start_shown;
         let side = Panel::right("settings")
-            .default_size(328.0)
+            .default_size(self.interface.panel_width)
             .size_range(272.0..=520.0)
             .resizable(true)
             .frame(egui::Frame::side_top_panel(ui.style()).inner_margin(Margin {
@@ -35,20 +36,30 @@ impl App {
                 bottom: 0,
             }));
         if panel_shown {
-            side.show(ui, |ui| {
+            let shown = side.show(ui, |ui| {
                 egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                     self.panel_ui(ui, scene);
                 });
             });
+            self.interface.panel_width = shown.response.rect.width();
+            if let Err(reason) = take_reset(ui.ctx(), scene) {
+                self.toasts.fail(reason);
+            }
         }
-        egui::CentralPanel::no_frame().show(ui, |ui| self.central_ui(ui, scene));
+        egui::CentralPanel::no_frame().show(ui, |ui| {
+            if self.interface.start_shown {
+                self.start_page(ui);
+            } else {
+                self.central_ui(ui, scene);
+            }
+        });
+        self.interface.theme = ui.options(|options| options.theme_preference);
         if let Some(chosen) = chosen {
             self.do_choice(ui.ctx(), scene, chosen);
         }
     }
 
     fn toolbar(&mut self, ui: &mut Ui, scene: &mut SceneDescription) -> Option<ToolbarChoice> {
-        let titles: Vec<&str> = GALLERY.iter().map(|entry| entry.title).collect();
         let facts = ToolbarFacts {
             title: &self.files.title,
             has_unsaved: self.document.is_dirty(),
@@ -56,7 +67,9 @@ impl App {
             redo: self.document.redo_label(),
             is_paused: self.interface.is_paused,
             panel_shown: self.interface.panel_shown,
-            gallery: &titles,
+            start_shown: self.interface.start_shown,
+            keys: &self.keys,
+            picture: self.exporter.progress(),
             recent: &self.interface.recent,
         };
         let display = &mut self.interface.display;
@@ -101,8 +114,11 @@ impl App {
         let facts = RenderFacts {
             accelerators: &AcceleratorKind::ALL.map(AcceleratorKind::name),
             tree: tree_lines(status.trees.as_ref()),
-            seconds: status.seconds,
-            noise: &self.work.noise,
+            convergence: Convergence {
+                noise: &self.work.noise,
+                seconds: status.seconds,
+                is_rendering: matches!(status.phase, Phase::Preview | Phase::Refining),
+            },
         };
         let summary = format!("{} samples", scene.render.samples);
         panels::section(ui, "Render", &summary, false, |ui| {
@@ -141,6 +157,17 @@ impl App {
             panels::objects_ui(ui, scene, &mut interface.selection);
             panels::report_ui(ui, &self.files.report);
         });
+    }
+
+    fn start_page(&mut self, ui: &mut Ui) {
+        let (recent, can_return) = (&self.interface.recent, self.files.has_scene);
+        let chosen = start_ui(ui, &mut self.thumbnails, recent, can_return);
+        self.viewport.hovered_pixel = None;
+        self.viewport.flying = false;
+        self.viewport.rect = ui.max_rect();
+        if let Some(choice) = chosen {
+            self.do_start(ui.ctx(), choice);
+        }
     }
 
     fn central_ui(&mut self, ui: &mut Ui, scene: &mut SceneDescription) {
@@ -189,8 +216,9 @@ impl App {
 
     /// The pinned picture beside the live one, or alone while its key is held.
     fn pinned_ui(&mut self, ui: &mut Ui, picture: Rect, clip: Rect, scene: &mut SceneDescription) {
+        let is_held = self.keys.is_held(ui.ctx(), Action::ShowPinned);
         let Some(pinned) = &mut self.pinned else { return };
-        if keys::is_held(ui.ctx(), Action::ShowPinned) {
+        if is_held {
             return pinned.show_alone(ui, picture, clip);
         }
         if let Some(choice) = pinned.show(ui, picture, clip, scene) {
@@ -216,7 +244,7 @@ impl App {
         });
         let is_free = self.awaited_click.is_none();
         self.probe.follow(ui.ctx(), output.hovered_pixel, known, is_free, &self.work.session);
-        let is_held = keys::is_held(ui.ctx(), Action::Loupe);
+        let is_held = self.keys.is_held(ui.ctx(), Action::Loupe);
         self.interface.loupe.follow(is_held, ui.input(|input| input.time));
         let pixel = output.hovered_pixel.and_then(|at| pixel_at(frame?, at));
         if let (true, Some(pixel)) = (self.interface.loupe.shown, pixel)

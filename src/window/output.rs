@@ -3,10 +3,10 @@
 use super::app::App;
 use super::files::Written;
 use super::relocate::relocated;
-use crate::io::output::{create_file, encode_png, replace_file};
+use crate::io::output::{OutputFormat, create_file, replace_file};
 use crate::io::{scene_file, snapshot};
 use crate::session::Frame;
-use crate::tone_mapping::srgb_bytes;
+use crate::session::develop::encode;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -61,11 +61,12 @@ impl App {
                     Ok(texts) => texts,
                     Err(error) => return Written::Failed(format!("snapshot: {error}")),
                 };
-            let srgb = srgb_bytes(&frame.picture, &description.tone_mapping);
-            match encode_png(size, &srgb, &texts) {
-                Ok(bytes) => write_numbered(&pictures_folder(), &title, &bytes),
-                Err(error) => Written::Failed(format!("snapshot: {error}")),
-            }
+            let (folder, tone) = (pictures_folder(), &description.tone_mapping);
+            let path = folder.join(&title);
+            let written = encode(&path, OutputFormat::Png, &frame.picture, tone, &texts)
+                .map_err(|error| error.to_string())
+                .and_then(|bytes| write_numbered(&folder, &title, "png", &bytes));
+            written.map_or_else(Written::Failed, Written::Snapshot)
         });
     }
 
@@ -81,25 +82,31 @@ impl App {
     }
 }
 
-/// Writes to the first free of the names `{title}-001.png`, `{title}-002.png` and so on.
-fn write_numbered(folder: &Path, title: &str, bytes: &[u8]) -> Written {
+/// Writes to the first free of the names `{title}-001.png`, `{title}-002.png` and so on; gives
+/// back which, or what is wrong.
+pub(super) fn write_numbered(
+    folder: &Path,
+    title: &str,
+    ending: &str,
+    bytes: &[u8],
+) -> Result<PathBuf, String> {
     for number in 1..=MOST_SNAPSHOTS {
-        let path = folder.join(format!("{title}-{number:03}.png"));
+        let path = folder.join(format!("{title}-{number:03}.{ending}"));
         if path.exists() {
             continue;
         }
         match create_file(&path, bytes) {
-            Ok(()) => return Written::Snapshot(path),
+            Ok(()) => return Ok(path),
             // Another program was quicker with this name.
             Err(error) if error.is_name_clash() => {}
-            Err(error) => return Written::Failed(error.to_string()),
+            Err(error) => return Err(error.to_string()),
         }
     }
-    Written::Failed(format!("{}: too many snapshots of {title}", folder.display()))
+    Err(format!("{}: too many pictures of {title}", folder.display()))
 }
 
 /// Where snapshots go: the user's pictures, else the home folder, else where the program runs.
-fn pictures_folder() -> PathBuf {
+pub(super) fn pictures_folder() -> PathBuf {
     let home = std::env::home_dir().filter(|home| home.is_dir());
     let pictures = home.as_ref().map(|home| home.join("Pictures")).filter(|path| path.is_dir());
     pictures.or(home).unwrap_or_else(|| PathBuf::from("."))
@@ -114,8 +121,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         for (n_before, content) in [b"one", b"two", b"six"].into_iter().enumerate() {
             let expected = folder.path().join(format!("egg-{:03}.png", n_before + 1));
-            let written = write_numbered(folder.path(), "egg", content);
-            assert_eq!(written, Written::Snapshot(expected), "another name");
+            let written = write_numbered(folder.path(), "egg", "png", content);
+            assert_eq!(written, Ok(expected), "another name");
         }
         let first = std::fs::read(folder.path().join("egg-001.png")).unwrap();
         assert_eq!(first, b"one", "the first snapshot was overwritten");

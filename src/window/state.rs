@@ -1,11 +1,15 @@
 //! What the window remembers beside the scene: how it is laid out and what is chosen in it.
 
+use super::export::ExportSettings;
 use super::loupe::Loupe;
 use super::navigation::Navigation;
 use super::panels::{DisplayState, Limits, PickFor, Selection, SizeMode};
+use egui::ThemePreference;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
+/// Width of the panel at first, in points.
+pub(super) const PANEL_WIDTH: f32 = 328.0;
 /// Files named in the menu of recent ones.
 const MOST_RECENT: usize = 10;
 
@@ -44,6 +48,16 @@ pub(super) struct InterfaceState {
     pub(super) lens_when_open: Option<f64>,
     /// Files opened before, newest first.
     pub(super) recent: Vec<PathBuf>,
+    /// Whether the start page is shown in the picture's place.
+    pub(super) start_shown: bool,
+    /// Whether the box that renders a picture is shown.
+    pub(super) export_shown: bool,
+    /// What is set in that box.
+    pub(super) export: ExportSettings,
+    /// Dark, light, or as the system.
+    pub(super) theme: ThemePreference,
+    /// Width of the panel in points.
+    pub(super) panel_width: f32,
 }
 
 impl Default for InterfaceState {
@@ -65,6 +79,11 @@ impl Default for InterfaceState {
             scene_unit_mm: 100.0,
             lens_when_open: None,
             recent: Vec::new(),
+            start_shown: false,
+            export_shown: false,
+            export: ExportSettings::default(),
+            theme: ThemePreference::System,
+            panel_width: PANEL_WIDTH,
         }
     }
 }
@@ -77,6 +96,9 @@ pub(super) struct Remembered {
     fixed_size: bool,
     scene_unit_mm: f64,
     recent: Vec<PathBuf>,
+    export: ExportSettings,
+    theme: ThemePreference,
+    panel_width: f32,
 }
 
 impl Default for Remembered {
@@ -96,6 +118,9 @@ impl Remembered {
             fixed_size: state.size_mode == SizeMode::Fixed,
             scene_unit_mm: state.scene_unit_mm,
             recent: state.recent.clone(),
+            export: state.export.clone(),
+            theme: state.theme,
+            panel_width: state.panel_width,
         }
     }
 
@@ -106,6 +131,9 @@ impl Remembered {
             size_mode: if self.fixed_size { SizeMode::Fixed } else { SizeMode::Window },
             scene_unit_mm: self.scene_unit_mm,
             recent: self.recent,
+            export: self.export,
+            theme: self.theme,
+            panel_width: self.panel_width,
             ..InterfaceState::default()
         }
     }
@@ -118,6 +146,8 @@ impl InterfaceState {
         self.navigation = Navigation::default();
         self.picking = None;
         self.lens_when_open = None;
+        self.export.samples = None;
+        self.start_shown = false;
     }
 
     /// Puts a file at the head of the recent ones.
@@ -145,6 +175,9 @@ mod tests {
     fn what_is_remembered_comes_back() {
         let mut state = InterfaceState { panel_shown: false, ..InterfaceState::default() };
         state.size_mode = SizeMode::Fixed;
+        state.theme = ThemePreference::Light;
+        state.panel_width = 400.0;
+        state.export.format = crate::io::output::OutputFormat::Exr;
         state.remember_file(PathBuf::from("a.toml"));
         let kept = Remembered::of(&state);
         assert_eq!(Remembered::of(&kept.clone().restore()), kept, "something was lost");

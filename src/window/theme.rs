@@ -27,6 +27,11 @@ pub(super) fn accent(visuals: &egui::Visuals) -> Color32 {
     if visuals.dark_mode { Tones::DARK.accent } else { Tones::LIGHT.accent }
 }
 
+/// Around what a modal box holds.
+pub(super) fn modal_frame(style: &Style) -> egui::Frame {
+    egui::Frame::popup(style).inner_margin(18)
+}
+
 /// The thin line between groups.
 pub(super) fn hairline(visuals: &egui::Visuals) -> Stroke {
     let tones = if visuals.dark_mode { Tones::DARK } else { Tones::LIGHT };
@@ -120,6 +125,7 @@ fn set_spacing(style: &mut Style) {
     spacing.combo_height = 320.0;
     spacing.tooltip_width = 320.0;
     spacing.scroll.floating = false;
+    spacing.scroll.foreground_color = false;
     spacing.scroll.bar_width = 6.0;
     spacing.scroll.bar_inner_margin = 4.0;
     spacing.scroll.bar_outer_margin = 2.0;

@@ -6,7 +6,8 @@ use std::time::Duration;
 
 /// How long a message that needs no answer stays.
 const SHOWN_FOR: Duration = Duration::from_secs(6);
-/// More than this at once would hide the picture: the oldest go.
+/// More than this at once would hide the picture. What passes by makes room; errors wait unseen
+/// until newer ones are closed.
 const MOST: usize = 4;
 
 /// The messages on show, oldest first.
@@ -27,7 +28,11 @@ struct Toast {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
+    /// Goes by itself.
     Passing,
+    /// Stays until it is closed.
+    Warning,
+    /// Stays until it is closed, and stands out.
     Error,
 }
 
@@ -42,6 +47,11 @@ impl Toasts {
         self.push(text.into(), Kind::Error);
     }
 
+    /// Says what was not as it should be; stays until it is closed.
+    pub(super) fn warn(&mut self, text: impl Into<String>) {
+        self.push(text.into(), Kind::Warning);
+    }
+
     /// Closes the newest message. False where there was none.
     pub(super) fn dismiss(&mut self) -> bool {
         self.shown.pop().is_some()
@@ -54,7 +64,7 @@ impl Toasts {
         self.last_time = now;
         let mut closed = Vec::new();
         let mut above = 0.0;
-        for toast in self.shown.iter_mut().rev() {
+        for toast in self.shown.iter_mut().rev().take(MOST) {
             let area = egui::Area::new(Id::unique(("toast", toast.id)))
                 .order(egui::Order::Foreground)
                 .pivot(Align2::CENTER_BOTTOM)
@@ -79,8 +89,13 @@ impl Toasts {
         self.shown.retain(|toast| toast.text != text);
         self.n_ever += 1;
         self.shown.push(Toast { id: self.n_ever, text, kind, left: SHOWN_FOR });
-        let n_too_many = self.shown.len().saturating_sub(MOST);
-        self.shown.drain(..n_too_many);
+        while MOST < self.shown.len() {
+            let oldest = self.shown.iter().position(|toast| toast.kind == Kind::Passing);
+            match oldest {
+                Some(oldest) => self.shown.remove(oldest),
+                None => break,
+            };
+        }
     }
 }
 
@@ -88,6 +103,7 @@ impl Toasts {
 fn toast_ui(ui: &mut egui::Ui, toast: &Toast) -> bool {
     let line = match toast.kind {
         Kind::Passing => theme::hairline(ui.visuals()).color,
+        Kind::Warning => theme::accent(ui.visuals()),
         Kind::Error => ui.visuals().error_fg_color,
     };
     egui::Frame::popup(ui.style())
@@ -97,7 +113,7 @@ fn toast_ui(ui: &mut egui::Ui, toast: &Toast) -> bool {
             ui.set_max_width(520.0);
             ui.horizontal(|ui| {
                 let text = match toast.kind {
-                    Kind::Passing => RichText::new(&toast.text),
+                    Kind::Passing | Kind::Warning => RichText::new(&toast.text),
                     Kind::Error => RichText::new(&toast.text).strong(),
                 };
                 let width = 440.0;
@@ -124,5 +140,17 @@ mod tests {
         }
         let texts: Vec<&str> = toasts.shown.iter().map(|toast| toast.text.as_str()).collect();
         assert_eq!(texts, ["b", "c", "d", "e"], "other messages are shown");
+    }
+
+    #[test]
+    fn what_passes_by_makes_room_for_errors_and_errors_for_nothing() {
+        let mut toasts = Toasts::default();
+        toasts.say("passing");
+        for text in ["a", "b", "c", "d", "e"] {
+            toasts.fail(text);
+        }
+        toasts.say("too late");
+        let texts: Vec<&str> = toasts.shown.iter().map(|toast| toast.text.as_str()).collect();
+        assert_eq!(texts, ["a", "b", "c", "d", "e"], "an error is lost");
     }
 }

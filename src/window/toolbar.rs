@@ -1,6 +1,7 @@
 //! The bar at the top: file, undo, view, and the few things that are always at hand.
 
-use super::keys::{Action, hint};
+use super::export::ExportProgress;
+use super::keys::{Action, Keys};
 use super::panels::DisplayState;
 use super::viewport::Zoom;
 use crate::scene::description::ToneMappingDescription;
@@ -20,8 +21,12 @@ pub(super) struct ToolbarFacts<'a> {
     pub(super) is_paused: bool,
     /// Whether the panel is shown.
     pub(super) panel_shown: bool,
-    /// Titles of the gallery scenes, in order.
-    pub(super) gallery: &'a [&'a str],
+    /// Whether the start page is shown.
+    pub(super) start_shown: bool,
+    /// The keys, for menus and tooltips.
+    pub(super) keys: &'a Keys,
+    /// How far a picture is that is rendered to a file.
+    pub(super) picture: Option<ExportProgress>,
     /// Files opened before, newest first.
     pub(super) recent: &'a [std::path::PathBuf],
 }
@@ -31,8 +36,6 @@ pub(super) struct ToolbarFacts<'a> {
 pub(super) enum ToolbarChoice {
     /// The same as pressing its key.
     Do(Action),
-    /// Open the gallery scene of that index.
-    Gallery(usize),
     /// Open that file.
     File(std::path::PathBuf),
     /// Show the box for a path.
@@ -51,57 +54,74 @@ pub(super) fn toolbar_ui(
         ui.spacing_mut().item_spacing.x = 4.0;
         menus(ui, facts, &mut chosen);
         ui.add_space(8.0);
-        let told = |verb: &str, step: Option<&str>| match step {
-            Some(step) => format!("{verb}: {step}"),
-            None => format!("nothing to {verb}"),
-        };
-        let (undo, redo) = (told("undo", facts.undo), told("redo", facts.redo));
-        button(ui, "Undo", &undo, Action::Undo, facts.undo.is_some(), &mut chosen);
-        button(ui, "Redo", &redo, Action::Redo, facts.redo.is_some(), &mut chosen);
-        ui.add_space(8.0);
-        let pause = if facts.is_paused { "Resume" } else { "Pause" };
-        button(ui, pause, "holds the picture, or goes on", Action::Pause, true, &mut chosen);
-        button(ui, "Frame", "the whole scene in the picture", Action::FrameAll, true, &mut chosen);
-        let help = "writes the picture to a file, with its scene inside";
-        button(ui, "Snapshot", help, Action::Snapshot, true, &mut chosen);
+        if !facts.start_shown {
+            work_ui(ui, facts, &mut chosen);
+        }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
-            let panel = Button::selectable(facts.panel_shown, "Panel");
-            if ui
-                .add(panel)
-                .on_hover_text(hint("the panel with all settings", Action::TogglePanel))
-                .clicked()
-            {
-                chosen = Some(ToolbarChoice::Do(Action::TogglePanel));
+            if !facts.start_shown {
+                let panel = Button::selectable(facts.panel_shown, "Panel");
+                let help = facts.keys.hint("the panel with all settings", Action::TogglePanel);
+                if ui.add(panel).on_hover_text(help).clicked() {
+                    chosen = Some(ToolbarChoice::Do(Action::TogglePanel));
+                }
             }
-            button(ui, "Help", "all keys", Action::Help, true, &mut chosen);
-            zoom_ui(ui, display);
-            exposure_ui(ui, tone);
-            let dot = if facts.has_unsaved { " •" } else { "" };
-            let title = RichText::new(format!("{}{dot}", facts.title)).weak();
-            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                ui.add_space(10.0);
-                let told = if facts.has_unsaved { "has edits that are not saved" } else { "saved" };
-                ui.add(egui::Label::new(title).truncate()).on_hover_text(told);
-            });
+            button(ui, facts.keys, ("Help", "all keys"), Action::Help, true, &mut chosen);
+            if !facts.start_shown {
+                zoom_ui(ui, display);
+                exposure_ui(ui, tone);
+                title_ui(ui, facts);
+            }
         });
     });
     chosen
 }
 
+/// What is done with the scene and its picture.
+fn work_ui(ui: &mut Ui, facts: &ToolbarFacts<'_>, chosen: &mut Option<ToolbarChoice>) {
+    let told = |verb: &str, step: Option<&str>| match step {
+        Some(step) => format!("{verb}: {step}"),
+        None => format!("nothing to {verb}"),
+    };
+    let (undo, redo) = (told("undo", facts.undo), told("redo", facts.redo));
+    let keys = facts.keys;
+    button(ui, keys, ("Undo", &undo), Action::Undo, facts.undo.is_some(), chosen);
+    button(ui, keys, ("Redo", &redo), Action::Redo, facts.redo.is_some(), chosen);
+    ui.add_space(8.0);
+    let pause = if facts.is_paused { "Resume" } else { "Pause" };
+    button(ui, keys, (pause, "holds the picture, or goes on"), Action::Pause, true, chosen);
+    let help = "the whole scene in the picture";
+    button(ui, keys, ("Frame", help), Action::FrameAll, true, chosen);
+    let help = "writes the picture as it is to a file, with its scene inside";
+    button(ui, keys, ("Snapshot", help), Action::Snapshot, true, chosen);
+    let (text, help) = match &facts.picture {
+        None => ("Render…".to_owned(), "renders a picture of any size to a file"),
+        Some(picture) => {
+            let percent = (picture.share() * 100.0).floor();
+            (format!("Render {percent} %"), "a picture is being rendered")
+        }
+    };
+    button(ui, keys, (&text, help), Action::RenderPicture, true, chosen);
+}
+
+fn title_ui(ui: &mut Ui, facts: &ToolbarFacts<'_>) {
+    let dot = if facts.has_unsaved { " •" } else { "" };
+    let title = RichText::new(format!("{}{dot}", facts.title)).weak();
+    ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+        ui.add_space(10.0);
+        let told = if facts.has_unsaved { "has edits that are not saved" } else { "saved" };
+        ui.add(egui::Label::new(title).truncate()).on_hover_text(told);
+    });
+}
+
 fn menus(ui: &mut Ui, facts: &ToolbarFacts<'_>, chosen: &mut Option<ToolbarChoice>) {
+    let keys = facts.keys;
     ui.menu_button("File", |ui| {
-        item(ui, "Open…", Action::Open, chosen);
+        item(ui, keys, "Open…", Action::Open, chosen);
         if ui.button("Open path…").on_hover_text("type where a file is").clicked() {
             *chosen = Some(ToolbarChoice::PathBox);
         }
-        ui.menu_button("Gallery", |ui| {
-            for (index, title) in facts.gallery.iter().enumerate() {
-                if ui.button(*title).clicked() {
-                    *chosen = Some(ToolbarChoice::Gallery(index));
-                }
-            }
-        });
+        item(ui, keys, "Gallery", Action::Gallery, chosen);
         ui.add_enabled_ui(!facts.recent.is_empty(), |ui| {
             ui.menu_button("Recent", |ui| {
                 for path in facts.recent {
@@ -113,25 +133,27 @@ fn menus(ui: &mut Ui, facts: &ToolbarFacts<'_>, chosen: &mut Option<ToolbarChoic
             });
         });
         ui.separator();
-        item(ui, "Save", Action::Save, chosen);
-        item(ui, "Save as…", Action::SaveAs, chosen);
+        item(ui, keys, "Save", Action::Save, chosen);
+        item(ui, keys, "Save as…", Action::SaveAs, chosen);
+        item(ui, keys, "Close scene", Action::CloseScene, chosen);
         ui.separator();
-        item(ui, "Snapshot", Action::Snapshot, chosen);
-        item(ui, "Copy picture", Action::CopyImage, chosen);
+        item(ui, keys, "Snapshot", Action::Snapshot, chosen);
+        item(ui, keys, "Render picture…", Action::RenderPicture, chosen);
+        item(ui, keys, "Copy picture", Action::CopyImage, chosen);
     });
     ui.menu_button("View", |ui| {
-        item(ui, "Frame all", Action::FrameAll, chosen);
-        item(ui, "Scene's camera", Action::HomeCamera, chosen);
+        item(ui, keys, "Frame all", Action::FrameAll, chosen);
+        item(ui, keys, "Scene's camera", Action::HomeCamera, chosen);
         ui.separator();
-        item(ui, "Front", Action::ViewFront, chosen);
-        item(ui, "Side", Action::ViewSide, chosen);
-        item(ui, "Top", Action::ViewTop, chosen);
+        item(ui, keys, "Front", Action::ViewFront, chosen);
+        item(ui, keys, "Side", Action::ViewSide, chosen);
+        item(ui, keys, "Top", Action::ViewTop, chosen);
         ui.separator();
-        item(ui, "Lens open or closed", Action::ToggleLens, chosen);
-        item(ui, "Pin and compare", Action::Compare, chosen);
-        item(ui, "Restart", Action::Restart, chosen);
+        item(ui, keys, "Lens open or closed", Action::ToggleLens, chosen);
+        item(ui, keys, "Pin and compare", Action::Compare, chosen);
+        item(ui, keys, "Restart", Action::Restart, chosen);
         ui.separator();
-        item(ui, "Full screen", Action::FullScreen, chosen);
+        item(ui, keys, "Full screen", Action::FullScreen, chosen);
         ui.menu_button("Theme", |ui| {
             let mut preference = ui.options(|options| options.theme_preference);
             let before = preference;
@@ -150,23 +172,22 @@ fn menus(ui: &mut Ui, facts: &ToolbarFacts<'_>, chosen: &mut Option<ToolbarChoic
 }
 
 /// A line of a menu with its key on the right.
-fn item(ui: &mut Ui, text: &str, action: Action, chosen: &mut Option<ToolbarChoice>) {
-    let keys = super::keys::shown(action);
-    if ui.add(Button::new(text).shortcut_text(keys)).clicked() {
+fn item(ui: &mut Ui, keys: &Keys, text: &str, action: Action, chosen: &mut Option<ToolbarChoice>) {
+    if ui.add(Button::new(text).shortcut_text(keys.shown(action))).clicked() {
         *chosen = Some(ToolbarChoice::Do(action));
     }
 }
 
 fn button(
     ui: &mut Ui,
-    text: &str,
-    help: &str,
+    keys: &Keys,
+    (text, help): (&str, &str),
     action: Action,
     enabled: bool,
     chosen: &mut Option<ToolbarChoice>,
 ) {
     let response = ui.add_enabled(enabled, Button::new(text).frame_when_inactive(false));
-    if response.on_hover_text(hint(help, action)).clicked() {
+    if response.on_hover_text(keys.hint(help, action)).clicked() {
         *chosen = Some(ToolbarChoice::Do(action));
     }
 }

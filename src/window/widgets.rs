@@ -5,8 +5,13 @@
 //! it or copies its parameter path.
 
 use super::theme::{FIGURE_WIDTH, LABEL_WIDTH, ROW_HEIGHT};
-use egui::{Response, Ui, Vec2};
+use crate::io::scene_file::{self, ParameterPath};
+use crate::scene::description::SceneDescription;
+use egui::{Id, Response, Ui, Vec2};
 use std::ops::RangeInclusive;
+
+/// Written behind lengths: scene units.
+pub(super) const LENGTH: &str = " u";
 
 /// One line of a panel: the name on the left, `contents` in the rest. Gives back their result.
 pub(super) fn row<R>(
@@ -33,11 +38,11 @@ pub(super) struct Figure<'a> {
     allowed: RangeInclusive<f64>,
     logarithmic_above: Option<f64>,
     integer: bool,
-    default: Option<f64>,
 }
 
 impl<'a> Figure<'a> {
-    /// A figure of that parameter path; the slider spans `usual`, the box takes any number.
+    /// A figure of that parameter path, empty where it is none of the scene's; the slider spans
+    /// `usual`, the box takes any number.
     pub(super) fn new(label: &'a str, path: String, usual: RangeInclusive<f64>) -> Self {
         Self {
             label,
@@ -48,7 +53,6 @@ impl<'a> Figure<'a> {
             allowed: f64::MIN..=f64::MAX,
             logarithmic_above: None,
             integer: false,
-            default: None,
         }
     }
 
@@ -76,12 +80,6 @@ impl<'a> Figure<'a> {
         self
     }
 
-    /// The value that "reset" gives.
-    pub(super) fn default_value(mut self, default: f64) -> Self {
-        self.default = Some(default);
-        self
-    }
-
     /// Shows the line and edits `value` in place.
     pub(super) fn show(self, ui: &mut Ui, value: &mut f64) {
         row(ui, self.label, self.help, |ui| {
@@ -101,7 +99,7 @@ impl<'a> Figure<'a> {
             if response.changed() {
                 self.write(value, slid);
             }
-            self.menu(&response, value);
+            parameter(&response, self.label, &self.path);
             self.figure_box(ui, value);
         });
     }
@@ -128,7 +126,7 @@ impl<'a> Figure<'a> {
         if response.changed() {
             self.write(value, typed);
         }
-        self.menu(&response, value);
+        parameter(&response, self.label, &self.path);
     }
 
     fn described(&self, response: Response) -> Response {
@@ -154,15 +152,6 @@ impl<'a> Figure<'a> {
             if span.is_finite() { span / 300.0 } else { 0.01 }
         }
     }
-
-    fn menu(&self, response: &Response, value: &mut f64) {
-        if let Some(reset) = parameter_menu(response, &self.path, self.default.is_some())
-            && reset
-            && let Some(default) = self.default
-        {
-            *value = default;
-        }
-    }
 }
 
 /// Three figures in one line: a point, a direction, three factors.
@@ -171,6 +160,7 @@ pub(super) fn triple(
     label: &str,
     path: &str,
     help: &str,
+    unit: &str,
     speed: f64,
     value: &mut [f64; 3],
 ) {
@@ -180,13 +170,14 @@ pub(super) fn triple(
         let width = ((ui.available_width() - 2.0 * gap) / 3.0).floor();
         for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate() {
             let mut typed = value[axis];
-            let response = number_box(ui, &mut typed, width, speed, "", false)
-                .accessible_name(format!("{label} {name}"))
+            let named = format!("{label} {name}");
+            let response = number_box(ui, &mut typed, width, speed, unit, false)
+                .accessible_name(&named)
                 .on_hover_text(format!("{name}. {help}"));
             if response.changed() && typed.is_finite() {
                 value[axis] = typed;
             }
-            let _ = parameter_menu(&response, path, false);
+            parameter(&response, &named, path);
         }
     });
 }
@@ -195,6 +186,7 @@ pub(super) fn triple(
 pub(super) fn choice<T: Copy + PartialEq>(
     ui: &mut Ui,
     label: &str,
+    path: &str,
     help: &str,
     value: &mut T,
     options: &[(T, &str, &str)],
@@ -210,9 +202,12 @@ pub(super) fn choice<T: Copy + PartialEq>(
                 .frame_when_inactive(true)
                 .min_size(Vec2::new(width, ROW_HEIGHT));
             let response = ui.add_sized([width, ROW_HEIGHT], button).on_hover_text(*explanation);
-            if response.accessible_name(format!("{label}: {name}")).clicked() && !chosen {
+            let named = format!("{label}: {name}");
+            let response = response.accessible_name(&named);
+            if response.clicked() && !chosen {
                 *value = *option;
             }
+            parameter(&response, &named, path);
         }
     });
 }
@@ -221,6 +216,7 @@ pub(super) fn choice<T: Copy + PartialEq>(
 pub(super) fn pick_one<'a>(
     ui: &mut Ui,
     label: &str,
+    path: &str,
     shown: &str,
     options: impl IntoIterator<Item = &'a str>,
 ) -> Option<usize> {
@@ -237,18 +233,20 @@ pub(super) fn pick_one<'a>(
             }
         })
         .response;
-    response.accessible_name(label);
+    parameter(&response.accessible_name(label), label, path);
     picked
 }
 
 /// A switch with its name beside it, in the column of values.
-pub(super) fn switch(ui: &mut Ui, label: &str, help: &str, value: &mut bool) {
-    row(ui, "", "", |ui| {
-        let response = ui.checkbox(value, label);
-        if !help.is_empty() {
-            response.on_hover_text(help);
-        }
-    });
+pub(super) fn switch(ui: &mut Ui, label: &str, path: &str, help: &str, value: &mut bool) {
+    row(ui, "", "", |ui| check(ui, label, path, help, value));
+}
+
+/// A switch with its name beside it.
+pub(super) fn check(ui: &mut Ui, label: &str, path: &str, help: &str, value: &mut bool) {
+    let response = ui.checkbox(value, label);
+    let response = if help.is_empty() { response } else { response.on_hover_text(help) };
+    parameter(&response, label, path);
 }
 
 /// A box with a figure: drag to change, click to type. The unit stands behind it.
@@ -293,19 +291,48 @@ pub(super) fn short(figure: f64) -> String {
     }
 }
 
-/// What a right click on a control offers. `Some(true)` where "reset" was chosen.
-pub(super) fn parameter_menu(response: &Response, path: &str, can_reset: bool) -> Option<bool> {
-    let mut reset = None;
-    response.context_menu(|ui| {
-        if can_reset && ui.button("Reset").clicked() {
-            reset = Some(true);
+/// Ties the control of that name to a parameter of the scene: a right click resets it or copies
+/// its path. An empty path is no parameter's.
+pub(super) fn parameter(response: &Response, label: &str, path: &str) {
+    if path.is_empty() {
+        return;
+    }
+    #[cfg(test)]
+    super::tests::parameters::note(&response.ctx, label, path);
+    #[cfg(not(test))]
+    let _ = label;
+    // Beside the popup that lists and swatches open themselves.
+    let menu = egui::Popup::context_menu(response).id(response.id.with("parameter"));
+    menu.show(|ui| {
+        let has_default = path.parse().is_ok_and(|path| scene_file::has_default(&path));
+        let reset = ui.add_enabled(has_default, egui::Button::new("Reset"));
+        if reset
+            .on_hover_text("the value of a scene file that does not say")
+            .on_disabled_hover_text("has no usual value")
+            .clicked()
+        {
+            ui.data_mut(|data| data.insert_temp(reset_id(), path.to_owned()));
         }
         if ui.button("Copy path").on_hover_text(path).clicked() {
             ui.copy_text(path.to_owned());
-            reset = Some(false);
         }
     });
-    reset
+}
+
+/// Gives the parameter its default whose reset was asked for in this frame.
+///
+/// # Errors
+/// Where the scene would not be valid then, in words.
+pub(super) fn take_reset(ctx: &egui::Context, scene: &mut SceneDescription) -> Result<(), String> {
+    let asked = ctx.data_mut(|data| data.remove_temp::<String>(reset_id()));
+    let Some(path) = asked else { return Ok(()) };
+    let path: ParameterPath = path.parse().map_err(|error| format!("{error}"))?;
+    *scene = scene_file::with_default(scene, &path).map_err(|error| error.to_string())?;
+    Ok(())
+}
+
+fn reset_id() -> Id {
+    Id::unique("reset a parameter")
 }
 
 /// The name of a line, cut with an ellipsis where it is too long.

@@ -48,6 +48,7 @@ impl RenderWork {
     pub(super) fn set_assets(&mut self, assets: Arc<Assets>) {
         self.assets = assets;
         self.resolved = None;
+        self.job = None;
     }
 
     /// The scene as last resolved.
@@ -94,6 +95,11 @@ impl RenderWork {
         self.session.submit(&job, goal);
         self.job = Some(job);
         Ok(())
+    }
+
+    /// What was last asked of the renderer.
+    pub(super) fn job(&self) -> Option<&RenderJob> {
+        self.job.as_ref()
     }
 
     /// Whether a frame shows the scene as it is now.

@@ -31,9 +31,10 @@ mod write;
 
 pub use keys::{Key, Presence, Rule, Section};
 pub use overrides::{Override, OverrideError};
-pub use parameters::{EditError, get, parameters, with_default, with_value};
+pub use parameters::{EditError, get, has_default, parameters, with_default, with_value};
 pub use path::{ParameterPath, PathError};
 pub use range::{LARGEST, LARGEST_LIGHT, Outside, Range, SMALLEST};
+pub(crate) use words::suggestion;
 pub use write::write;
 
 use check::{Fault, check_shape, check_values, name_the_unnamed};

@@ -4,7 +4,7 @@ use toml::{Table, Value};
 
 use crate::scene::description::SceneDescription;
 
-use super::keys::{Presence, Rule, Section};
+use super::keys::{Key, Presence, Rule, Section};
 use super::path::{ParameterPath, PathError};
 use super::slot::entry_name;
 use super::{Invalid, scene_of, table_of};
@@ -57,6 +57,22 @@ pub fn with_default(
     }
     slot.remove(&mut root);
     valid_scene(&root)
+}
+
+/// Whether a parameter of that path has a default, so that [`with_default`] can give it.
+pub fn has_default(path: &ParameterPath) -> bool {
+    let mut names = path.names().iter();
+    let Some(section) = names.next().and_then(|name| Section::named(name)) else { return false };
+    if section.entry_noun().is_some() {
+        names.next();
+    }
+    let named = |keys: &'static [Key], name: &String| keys.iter().find(|key| key.name == name);
+    let key = names.next().and_then(|name| named(section.keys(), name));
+    let innermost = match (key.map(|key| key.rule), names.next()) {
+        (Some(Rule::Table(keys)), Some(inner)) => named(keys, inner),
+        _ => key,
+    };
+    innermost.is_some_and(|key| key.presence != Presence::Required && key.name != "name")
 }
 
 fn valid_scene(root: &Table) -> Result<SceneDescription, EditError> {

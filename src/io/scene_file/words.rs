@@ -112,7 +112,7 @@ pub(super) fn nearest<'a>(
 
 /// "; did you mean …?", or what to choose from where nothing is near, or nothing where there is
 /// no choice.
-pub(super) fn suggestion<'a>(
+pub(crate) fn suggestion<'a>(
     word: &str,
     candidates: impl IntoIterator<Item = &'a str> + Clone,
     show: impl Fn(&str) -> String,

@@ -4,7 +4,7 @@ use super::lens_diagram::lens_diagram;
 use super::{PickFor, subheading};
 use crate::scene::description::CameraDescription;
 use crate::scene::orbit;
-use crate::window::widgets::{Figure, row, short, switch, triple};
+use crate::window::widgets::{Figure, LENGTH, parameter, row, short, switch, triple};
 use egui::Ui;
 
 /// Height of the sensor that equivalent f-numbers stand for, in millimetres.
@@ -30,9 +30,17 @@ pub(in crate::window) fn camera_ui(
     let reach = orbit::focal_distance(camera);
     let speed = (reach * 0.004).max(1e-5);
     let before = camera.clone();
-    triple(ui, "Eye", "camera.eye", "where the lens is", speed, &mut camera.eye);
-    triple(ui, "Target", "camera.target", "the middle of the picture", speed, &mut camera.target);
-    triple(ui, "Up", "camera.up", "what is up in the picture", 0.01, &mut camera.up);
+    triple(ui, "Eye", "camera.eye", "where the lens is", LENGTH, speed, &mut camera.eye);
+    triple(
+        ui,
+        "Target",
+        "camera.target",
+        "the middle of the picture",
+        LENGTH,
+        speed,
+        &mut camera.target,
+    );
+    triple(ui, "Up", "camera.up", "what is up in the picture", "", 0.01, &mut camera.up);
     if orbit::view_axes(camera).is_none() {
         // A view along its own up, or from a point to itself, is no camera.
         *camera = before;
@@ -50,7 +58,7 @@ fn lens_ui(
     Figure::new("Aperture", "camera.aperture_radius".to_owned(), 0.0..=widest)
         .allowed(0.0..=1e9)
         .logarithmic(widest * 1e-4)
-        .default_value(0.0)
+        .unit(LENGTH)
         .help("radius of the lens: wider is more blur away from the focus, 0 is a pinhole")
         .show(ui, &mut camera.aperture_radius);
     let help = "the lens of a full-frame camera, 36 x 24 mm, that takes this picture: f-number and \
@@ -65,7 +73,6 @@ fn lens_ui(
     Figure::new("Field of view", "camera.vertical_fov".to_owned(), 5.0..=120.0)
         .allowed(0.01..=179.99)
         .unit("°")
-        .default_value(40.0)
         .help("full angle from the bottom of the picture to its top")
         .show(ui, &mut camera.vertical_fov);
     blades_ui(ui, camera);
@@ -79,9 +86,10 @@ fn focus_ui(
     picking: &mut Option<PickFor>,
 ) {
     let mut distance = focus;
-    Figure::new("Focus", "camera.focal_distance".to_owned(), focus * 0.0..=focus_span(camera))
+    Figure::new("Focus", "camera.focal_distance".to_owned(), 0.0..=focus_span(camera))
         .allowed(1e-6..=1e12)
         .logarithmic(focus_span(camera) * 1e-3)
+        .unit(LENGTH)
         .help("distance to the plane in focus, along the view")
         .show(ui, &mut distance);
     if distance != focus {
@@ -100,9 +108,11 @@ fn focus_ui(
         let follows = camera.focal_distance.is_none();
         let button = egui::Button::selectable(follows, "On target");
         let follow = ui.add(button.frame_when_inactive(true));
-        if follow.on_hover_text("the focus follows the camera's target").clicked() {
+        let follow = follow.on_hover_text("the focus follows the camera's target");
+        if follow.clicked() {
             camera.focal_distance = if follows { Some(focus) } else { None };
         }
+        parameter(&follow, "On target", "camera.focal_distance");
     });
 }
 
@@ -116,7 +126,6 @@ fn blades_ui(ui: &mut Ui, camera: &mut CameraDescription) {
     let mut blades = camera.aperture_blades;
     Figure::new("Blades", "camera.aperture_blades".to_owned(), 0.0..=16.0)
         .allowed(0.0..=16.0)
-        .default_value(0.0)
         .help("corners of the lens opening, seen in far lights: 0 is round, else 3 to 16")
         .show_integer(ui, &mut blades);
     if blades != camera.aperture_blades {

@@ -58,11 +58,11 @@ pub(in crate::window) fn display_ui(
     Figure::new("Exposure", "tone_mapping.exposure".to_owned(), -6.0..=6.0)
         .allowed(-64.0..=64.0)
         .unit(" EV")
-        .default_value(0.0)
         .help("brighter or darker in stops: +1 is twice the light (E, Shift+E)")
         .show(ui, &mut tone.exposure);
-    choice(ui, "Curve", "how light becomes display brightness (T)", &mut tone.operator, &OPERATORS);
-    choice(ui, "Zoom", "", &mut state.zoom, &ZOOMS);
+    let (path, help) = ("tone_mapping.operator", "how light becomes display brightness (T)");
+    choice(ui, "Curve", path, help, &mut tone.operator, &OPERATORS);
+    choice(ui, "Zoom", "", "", &mut state.zoom, &ZOOMS);
     if let Some(statistics) = statistics {
         histogram(ui, statistics);
     }

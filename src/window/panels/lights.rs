@@ -5,7 +5,7 @@ use super::{PickFor, Selection, path_segment, subheading};
 use crate::scene::description::{LightDescription, LightKind, OneOrTwo, SceneDescription};
 use crate::window::color::strength_and_tint;
 use crate::window::structure::Part;
-use crate::window::widgets::{Figure, pick_one, row, switch, triple};
+use crate::window::widgets::{Figure, LENGTH, check, pick_one, row, switch, triple};
 use egui::Ui;
 
 const KINDS: [(LightKind, &str); 5] = [
@@ -30,7 +30,8 @@ pub(in crate::window) fn lights_ui(
         light_ui(ui, light, reach);
         pick_ui(ui, light.kind, picking);
     }
-    switch(ui, "Show in picture", "marks every light; drag a mark to move it", shown_in_picture);
+    let help = "marks every light; drag a mark to move it";
+    switch(ui, "Show in picture", "", help, shown_in_picture);
     subheading(ui, "Everywhere");
     let ambient = Figure::new("Ambient", "environment.ambient".to_owned(), 0.0..=2.0)
         .logarithmic(0.001)
@@ -39,15 +40,17 @@ pub(in crate::window) fn lights_ui(
 }
 
 fn light_ui(ui: &mut Ui, light: &mut LightDescription, reach: f64) {
-    let path = |key: &str| format!("lights.{}.{key}", path_segment(&light.name));
+    let prefix = format!("lights.{}", path_segment(&light.name));
+    let path = |key: &str| format!("{prefix}.{key}");
     let (position, target, power) = (path("position"), path("target"), path("power"));
-    let (size, up) = (path("size"), path("up"));
+    let (size, up, kind) = (path("size"), path("up"), path("type"));
     row(ui, "", "", |ui| {
-        ui.checkbox(&mut light.enabled, "Enabled").on_hover_text("off: as if it were not there");
-        ui.checkbox(&mut light.visible, "Visible")
-            .on_hover_text("seen by the camera and in mirrors; never blocks other light");
+        let help = "off: as if it were not there";
+        check(ui, "Enabled", &path("enabled"), help, &mut light.enabled);
+        let help = "seen by the camera and in mirrors; never blocks other light";
+        check(ui, "Visible", &path("visible"), help, &mut light.visible);
     });
-    row(ui, "Type", "", |ui| kind_ui(ui, light));
+    row(ui, "Type", "", |ui| kind_ui(ui, light, &kind));
     let strength_unit = if light.kind == LightKind::Sun { " W/m²" } else { " W" };
     let figure = Figure::new("Power", power.clone(), 0.0..=1e5)
         .logarithmic(0.01)
@@ -56,14 +59,14 @@ fn light_ui(ui: &mut Ui, light: &mut LightDescription, reach: f64) {
     strength_and_tint(ui, figure, &power, &mut light.power);
     size_ui(ui, light, size, reach);
     let speed = (reach * 0.004).max(1e-4);
-    triple(ui, "Position", &position, "its centre", speed, &mut light.position);
+    triple(ui, "Position", &position, "its centre", LENGTH, speed, &mut light.position);
     if !matches!(light.kind, LightKind::Point | LightKind::Sphere) {
         let help = "the side that shines faces this point";
-        triple(ui, "Target", &target, help, speed, &mut light.target);
+        triple(ui, "Target", &target, help, LENGTH, speed, &mut light.target);
     }
     if light.kind == LightKind::Rectangle {
         let before = light.up;
-        triple(ui, "Up", &up, "turns the rectangle about its axis", 0.01, &mut light.up);
+        triple(ui, "Up", &up, "turns the rectangle about its axis", "", 0.01, &mut light.up);
         if light.up == [0.0; 3] {
             light.up = before;
         }
@@ -93,10 +96,10 @@ fn pick_ui(ui: &mut Ui, kind: LightKind, picking: &mut Option<PickFor>) {
     });
 }
 
-fn kind_ui(ui: &mut Ui, light: &mut LightDescription) {
+fn kind_ui(ui: &mut Ui, light: &mut LightDescription, path: &str) {
     let names = KINDS.map(|(_, name)| name);
     let shown = KINDS.iter().find(|(kind, _)| *kind == light.kind).map_or("", |(_, name)| name);
-    if let Some(index) = pick_one(ui, "Light type", shown, names) {
+    if let Some(index) = pick_one(ui, "Light type", path, shown, names) {
         light.kind = KINDS[index].0;
         light.size = fitting_size(light.kind, light.size);
     }
@@ -109,7 +112,7 @@ fn size_ui(ui: &mut Ui, light: &mut LightDescription, path: String, reach: f64) 
         Figure::new(label, path.clone(), 0.0..=largest)
             .allowed(0.0..=1e9)
             .logarithmic(largest * 1e-3)
-            .default_value(0.0)
+            .unit(LENGTH)
             .help(help)
     };
     match light.kind {
@@ -136,7 +139,6 @@ fn size_ui(ui: &mut Ui, light: &mut LightDescription, path: String, reach: f64) 
             Figure::new("Diameter", path, 0.0..=20.0)
                 .allowed(0.0..=180.0)
                 .unit("°")
-                .default_value(0.0)
                 .help("angle it fills in the sky; the real sun fills 0.53°")
                 .show(ui, &mut width);
             if width != light.size.pair()[0] {

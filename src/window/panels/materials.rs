@@ -9,7 +9,7 @@ use crate::scene::description::{
 use crate::window::color::{color_row, strength_and_tint};
 use crate::window::presets;
 use crate::window::structure::Part;
-use crate::window::widgets::{Figure, choice, pick_one, row, switch, triple};
+use crate::window::widgets::{Figure, LENGTH, choice, pick_one, row, switch, triple};
 use egui::Ui;
 
 const A_COLOUR: &str = "Colour";
@@ -63,7 +63,7 @@ fn material_ui(
     let path = |key: &str| format!("{prefix}.{key}");
     row(ui, "Preset", "replaces the look, keeps the name", |ui| {
         let names = presets::MATERIALS.iter().map(|preset| preset.name);
-        if let Some(index) = pick_one(ui, "Material preset", "choose…", names) {
+        if let Some(index) = pick_one(ui, "Material preset", "", "choose…", names) {
             (presets::MATERIALS[index].apply)(material);
         }
     });
@@ -74,10 +74,11 @@ fn material_ui(
     let help = "rho_s: how much the gloss reflects";
     color_row(ui, "Specular", &path("specular"), help, 1.0, &mut material.specular);
     roughness_ui(ui, material, &prefix, linked);
-    choice(ui, "Form", "how the lobe is normalised", &mut material.ward, &WARD_FORMS);
+    let help = "how the lobe is normalised";
+    choice(ui, "Form", &path("ward"), help, &mut material.ward, &WARD_FORMS);
     let help = "direction of alpha x, in the object's own space";
     let before = material.tangent;
-    triple(ui, "Tangent", &path("tangent"), help, 0.01, &mut material.tangent);
+    triple(ui, "Tangent", &path("tangent"), help, "", 0.01, &mut material.tangent);
     if material.tangent == [0.0; 3] {
         material.tangent = before;
     }
@@ -89,17 +90,15 @@ fn material_ui(
     color_row(ui, "Glass", &path("transmission"), help, 1.0, &mut material.transmission);
     Figure::new("Refraction", path("ior"), 1.0..=2.5)
         .allowed(1e-3..=1e3)
-        .default_value(1.5)
         .help("index of refraction: water 1.33, glass 1.5, diamond 2.4")
         .show(ui, &mut material.ior);
 
     subheading(ui, "Glow and relief");
     let figure = Figure::new("Emission", path("emission"), 0.0..=100.0)
         .logarithmic(0.001)
-        .default_value(0.0)
         .help("radiance it gives off by itself; lights other things only with path tracing");
     strength_and_tint(ui, figure, &path("emission"), &mut material.emission);
-    bump_ui(ui, &mut material.bump, &path("bump.height"), textures);
+    bump_ui(ui, &mut material.bump, &path("bump"), textures);
 }
 
 fn roughness_ui(ui: &mut Ui, material: &mut MaterialDescription, prefix: &str, linked: &mut bool) {
@@ -107,7 +106,6 @@ fn roughness_ui(ui: &mut Ui, material: &mut MaterialDescription, prefix: &str, l
         Figure::new(label, format!("{prefix}.{key}"), 0.01..=1.0)
             .allowed(1e-4..=1e3)
             .logarithmic(0.01)
-            .default_value(0.15)
             .help(help)
     };
     let before = (material.alpha_x, material.alpha_y);
@@ -120,7 +118,8 @@ fn roughness_ui(ui: &mut Ui, material: &mut MaterialDescription, prefix: &str, l
     } else if *linked && material.alpha_y != before.1 {
         material.alpha_x = material.alpha_y;
     }
-    switch(ui, "Link alpha x and y", "both change together: the same in all directions", linked);
+    let help = "both change together: the same in all directions";
+    switch(ui, "Link alpha x and y", "", help, linked);
 }
 
 fn bump_ui(
@@ -134,7 +133,7 @@ fn bump_ui(
     row(ui, "Bump", "a texture whose brightness is a height", |ui| {
         let shown = bump.as_ref().map_or(NO_BUMP, |bump| bump.texture.as_str()).to_owned();
         let options = std::iter::once(NO_BUMP).chain(fit.iter().copied());
-        match pick_one(ui, "Bump texture", &shown, options) {
+        match pick_one(ui, "Bump texture", &format!("{path}.texture"), &shown, options) {
             None => {}
             Some(0) => *bump = None,
             Some(index) => {
@@ -144,7 +143,8 @@ fn bump_ui(
         }
     });
     if let Some(bump) = bump {
-        Figure::new("Bump height", path.to_owned(), -0.1..=0.1)
+        Figure::new("Bump height", format!("{path}.height"), -0.1..=0.1)
+            .unit(LENGTH)
             .help("height of white, in the object's own units; below 0 is a hollow")
             .show(ui, &mut bump.height);
     }
@@ -169,8 +169,8 @@ pub(super) fn color_or_texture(
             crate::window::color::swatch(ui, label, path, help, 44.0, highest, color);
         }
         let names = textures.iter().map(|(name, _)| name.as_str());
-        let picked =
-            pick_one(ui, &format!("{label} from"), &shown, std::iter::once(A_COLOUR).chain(names));
+        let options = std::iter::once(A_COLOUR).chain(names);
+        let picked = pick_one(ui, &format!("{label} from"), path, &shown, options);
         match picked {
             None => {}
             Some(0) => {

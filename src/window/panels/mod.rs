@@ -2,6 +2,7 @@
 //! nothing and knows nothing of rendering. The caller finds changes by comparing.
 
 mod camera;
+mod convergence;
 mod display;
 mod lens_diagram;
 mod lights;
@@ -12,11 +13,12 @@ mod render;
 mod textures;
 
 pub(super) use camera::{camera_ui, sharp_range};
+pub(super) use convergence::Convergence;
 pub(super) use display::{DisplayState, PictureStatistics, display_ui};
 pub(super) use lights::lights_ui;
 pub(super) use materials::materials_ui;
 pub(super) use objects::{objects_ui, report_ui};
-pub(super) use render::{Limits, RenderFacts, SizeMode, render_ui};
+pub(super) use render::{Limits, RenderFacts, SizeMode, limits_ui, render_ui};
 pub(super) use textures::textures_ui;
 
 use super::theme;

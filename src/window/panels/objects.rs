@@ -7,7 +7,7 @@ use crate::scene::description::{
 };
 use crate::window::fields::entered_text;
 use crate::window::structure::{self, Part};
-use crate::window::widgets::{Figure, choice, pick_one, row, switch, triple};
+use crate::window::widgets::{Figure, LENGTH, choice, pick_one, row, switch, triple};
 use egui::Ui;
 
 const NO_MATERIAL: &str = "none";
@@ -52,9 +52,10 @@ pub(in crate::window) fn report_ui(ui: &mut Ui, report: &[String]) {
 }
 
 fn object_ui(ui: &mut Ui, object: &mut ObjectDescription, materials: &[String], reach: f64) {
-    row(ui, "", "", |ui| {
-        ui.checkbox(&mut object.enabled, "Enabled").on_hover_text("off: as if it were not there");
-    });
+    let prefix = format!("objects.{}", path_segment(&object.name));
+    let path = |key: &str| format!("{prefix}.{key}");
+    let help = "off: as if it were not there";
+    switch(ui, "Enabled", &path("enabled"), help, &mut object.enabled);
     row(ui, "Shape", "", |ui| {
         let shown =
             KINDS.iter().find(|(kind, _)| *kind == object.kind).map_or("", |(_, name)| name);
@@ -63,7 +64,8 @@ fn object_ui(ui: &mut Ui, object: &mut ObjectDescription, materials: &[String], 
             .into_iter()
             .filter(|(kind, _)| *kind != ObjectKind::Mesh || object.file.is_some())
             .collect();
-        if let Some(index) = pick_one(ui, "Shape", shown, offered.iter().map(|(_, name)| *name)) {
+        let names = offered.iter().map(|(_, name)| *name);
+        if let Some(index) = pick_one(ui, "Shape", &path("type"), shown, names) {
             object.kind = offered[index].0;
             structure::complete(object, reach * 0.12);
         }
@@ -71,7 +73,7 @@ fn object_ui(ui: &mut Ui, object: &mut ObjectDescription, materials: &[String], 
     row(ui, "Made of", "", |ui| {
         let shown = object.material.clone().unwrap_or_else(|| NO_MATERIAL.to_owned());
         let options = std::iter::once(NO_MATERIAL).chain(materials.iter().map(String::as_str));
-        match pick_one(ui, "Made of", &shown, options) {
+        match pick_one(ui, "Made of", &path("material"), &shown, options) {
             None => {}
             Some(0) => object.material = None,
             Some(index) => object.material = Some(materials[index - 1].clone()),
@@ -79,7 +81,8 @@ fn object_ui(ui: &mut Ui, object: &mut ObjectDescription, materials: &[String], 
     });
     let file = object.file.clone().unwrap_or_default();
     let help = "an OBJ file, relative to the scene; entering one makes this object a mesh";
-    if let Some(file) = entered_text(ui, "Mesh file", help, "path of an OBJ file", &file) {
+    let hint = "path of an OBJ file";
+    if let Some(file) = entered_text(ui, "Mesh file", help, hint, &path("file"), &file) {
         object.file = Some(file);
         object.kind = ObjectKind::Mesh;
     }
@@ -91,11 +94,19 @@ fn transform_ui(ui: &mut Ui, object: &mut ObjectDescription, reach: f64) {
     let path = |key: &str| format!("objects.{}.{key}", path_segment(&object.name));
     let (translate, rotate, scale) = (path("translate"), path("rotate"), path("scale"));
     let speed = (reach * 0.002).max(1e-5);
-    triple(ui, "Move", &translate, "added last, in scene units", speed, &mut object.translate);
-    triple(ui, "Turn", &rotate, "degrees about X, then Y, then Z", 0.5, &mut object.rotate);
+    triple(
+        ui,
+        "Move",
+        &translate,
+        "added last, in scene units",
+        LENGTH,
+        speed,
+        &mut object.translate,
+    );
+    triple(ui, "Turn", &rotate, "degrees about X, then Y, then Z", "°", 0.5, &mut object.rotate);
     let mut per_axis = matches!(object.scale, OneOrThree::Three(_));
     let help = "scales each axis by itself";
-    switch(ui, "Scale each axis", help, &mut per_axis);
+    switch(ui, "Scale each axis", "", help, &mut per_axis);
     object.scale = match (per_axis, object.scale) {
         (true, OneOrThree::One(factor)) => OneOrThree::Three([factor; 3]),
         (false, OneOrThree::Three([factor, ..])) => OneOrThree::One(factor),
@@ -106,7 +117,7 @@ fn transform_ui(ui: &mut Ui, object: &mut ObjectDescription, reach: f64) {
             let mut new = factor;
             Figure::new("Scale", scale, 0.1..=10.0)
                 .logarithmic(0.01)
-                .default_value(1.0)
+                .unit("×")
                 .help("size, the same along all axes; below 0 mirrors")
                 .show(ui, &mut new);
             if new != factor && new != 0.0 {
@@ -116,7 +127,7 @@ fn transform_ui(ui: &mut Ui, object: &mut ObjectDescription, reach: f64) {
         OneOrThree::Three(factors) => {
             let mut new = factors;
             let help = "size along each axis; below 0 mirrors";
-            triple(ui, "Scale", &scale, help, 0.01, &mut new);
+            triple(ui, "Scale", &scale, help, "×", 0.01, &mut new);
             if new != factors && !new.contains(&0.0) {
                 object.scale = OneOrThree::Three(new);
             }
@@ -130,12 +141,12 @@ fn shape_ui(ui: &mut Ui, object: &mut ObjectDescription, reach: f64) {
     let speed = (reach * 0.002).max(1e-5);
     match object.kind {
         ObjectKind::Mesh => {
-            choice(ui, "Normals", "how the surface is shaded", &mut object.normals, &NORMALS);
+            let (help, path) = ("how the surface is shaded", path("normals"));
+            choice(ui, "Normals", &path, help, &mut object.normals, &NORMALS);
             if object.normals != NormalsKind::Flat {
-                Figure::new("Crease", path("crease_angle"), 0.0..=180.0)
+                Figure::new("Crease", format!("{prefix}.crease_angle"), 0.0..=180.0)
                     .allowed(0.0..=180.0)
                     .unit("°")
-                    .default_value(180.0)
                     .help("edges sharper than this stay edges where normals are averaged")
                     .show(ui, &mut object.crease_angle);
             }
@@ -185,7 +196,8 @@ fn shape_ui(ui: &mut Ui, object: &mut ObjectDescription, reach: f64) {
 
 fn point_ui(ui: &mut Ui, label: &str, path: &str, speed: f64, value: &mut Option<[f64; 3]>) {
     if let Some(point) = value {
-        triple(ui, label, path, "in the object's own space", speed, point);
+        let unit = if path.ends_with(".normal") { "" } else { LENGTH };
+        triple(ui, label, path, "in the object's own space", unit, speed, point);
     }
 }
 
@@ -195,6 +207,7 @@ fn radius_ui(ui: &mut Ui, path: String, reach: f64, radius: &mut Option<f64>) {
         Figure::new("Radius", path, 0.0..=largest)
             .allowed(1e-9..=1e12)
             .logarithmic(largest * 1e-3)
+            .unit(LENGTH)
             .show(ui, radius);
     }
 }

@@ -1,8 +1,9 @@
 //! The line at the top of a group: which part is shown, and what can be done with the list.
 
+use super::path_segment;
 use crate::scene::description::{SceneDescription, Triple};
 use crate::window::structure::{self, Part};
-use crate::window::widgets::{pick_one, row};
+use crate::window::widgets::{parameter, pick_one, row};
 use egui::Ui;
 
 /// A name being typed for a part.
@@ -42,11 +43,11 @@ pub(super) fn part_list(
     selected: &mut usize,
     renaming: &mut Option<Renaming>,
 ) -> Option<usize> {
-    let (label, one) = match part {
-        Part::Light => ("Light", "light"),
-        Part::Material => ("Material", "material"),
-        Part::Texture => ("Texture", "texture"),
-        Part::Object => ("Object", "object"),
+    let (label, one, list) = match part {
+        Part::Light => ("Light", "light", "lights"),
+        Part::Material => ("Material", "material", "materials"),
+        Part::Texture => ("Texture", "texture", "textures"),
+        Part::Object => ("Object", "object", "objects"),
     };
     let n_parts = structure::names(scene, part).len();
     *selected = (*selected).min(n_parts.saturating_sub(1));
@@ -61,7 +62,7 @@ pub(super) fn part_list(
         row(ui, label, "", |ui| {
             let names = structure::names(scene, part);
             let shown = names[*selected].to_owned();
-            if let Some(index) = pick_one(ui, label, &shown, names) {
+            if let Some(index) = pick_one(ui, label, "", &shown, names) {
                 *selected = index;
             }
         });
@@ -78,9 +79,14 @@ pub(super) fn part_list(
             if copy.clicked() {
                 *selected = structure::duplicate(scene, part, *selected);
             }
-            if ui.button("Rename").on_hover_text(format!("renames this {one}")).clicked() {
-                let text = structure::names(scene, part)[*selected].to_owned();
-                *renaming = Some(Renaming { part, index: *selected, text, is_new: true });
+            let rename = ui.button("Rename").on_hover_text(format!("renames this {one}"));
+            let name = structure::names(scene, part).get(*selected).map(|name| (*name).to_owned());
+            if let Some(text) = name {
+                let path = format!("{list}.{}.name", path_segment(&text));
+                parameter(&rename, "Rename", &path);
+                if rename.clicked() {
+                    *renaming = Some(Renaming { part, index: *selected, text, is_new: true });
+                }
             }
             let delete = ui.button("Delete").on_hover_text(format!("removes this {one}"));
             if delete.clicked() {

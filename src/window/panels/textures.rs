@@ -54,10 +54,11 @@ pub(in crate::window) fn textures_ui(
 fn texture_ui(ui: &mut Ui, texture: &mut TextureDescription) {
     row(ui, "Preset", "replaces the look, keeps the name", |ui| {
         let names = presets::TEXTURES.iter().map(|preset| preset.name);
-        if let Some(index) = pick_one(ui, "Texture preset", "choose…", names) {
+        if let Some(index) = pick_one(ui, "Texture preset", "", "choose…", names) {
             (presets::TEXTURES[index].apply)(texture);
         }
     });
+    let prefix = format!("textures.{}", path_segment(&texture.name));
     row(ui, "Pattern", "", |ui| {
         let shown =
             KINDS.iter().find(|(kind, _)| *kind == texture.kind).map_or("", |(_, name)| name);
@@ -67,14 +68,15 @@ fn texture_ui(ui: &mut Ui, texture: &mut TextureDescription) {
             .filter(|(kind, _)| *kind != TextureKind::Image || texture.file.is_some())
             .collect();
         let names = offered.iter().map(|(_, name)| *name);
-        if let Some(picked) = pick_one(ui, "Pattern", shown, names) {
+        if let Some(picked) = pick_one(ui, "Pattern", &format!("{prefix}.type"), shown, names) {
             texture.kind = offered[picked].0;
             fit_colors(texture);
         }
     });
     let file = texture.file.clone().unwrap_or_default();
     let help = "a PNG or JPEG, relative to the scene; entering one makes this texture an image";
-    if let Some(file) = entered_text(ui, "Image file", help, "path of a picture", &file) {
+    let (hint, path) = ("path of a picture", format!("{prefix}.file"));
+    if let Some(file) = entered_text(ui, "Image file", help, hint, &path, &file) {
         texture.file = Some(file);
         texture.kind = TextureKind::Image;
     }
@@ -91,8 +93,8 @@ fn figures_ui(ui: &mut Ui, texture: &mut TextureDescription) {
         figure("Scale", "scale", 0.1..=50.0)
             .allowed(1e-6..=1e6)
             .logarithmic(0.1)
-            .default_value(1.0)
-            .help("cells of the pattern in one scene unit")
+            .unit(if texture.kind == TextureKind::Image { "×" } else { " /u" })
+            .help("cells of the pattern in one scene unit; of an image, repetitions")
             .show(ui, &mut texture.scale);
     }
     if !texture.kind.is_noise() {
@@ -100,21 +102,17 @@ fn figures_ui(ui: &mut Ui, texture: &mut TextureDescription) {
     }
     figure("Octaves", "octaves", 1.0..=12.0)
         .allowed(1.0..=12.0)
-        .default_value(6.0)
         .help("layers of ever finer detail")
         .show_integer(ui, &mut texture.octaves);
     figure("Lacunarity", "lacunarity", 1.0..=4.0)
         .allowed(1e-3..=1e3)
-        .default_value(2.0)
         .help("how much finer each layer is than the one before")
         .show(ui, &mut texture.lacunarity);
     figure("Gain", "gain", 0.0..=1.0)
         .allowed(0.0..=1e3)
-        .default_value(0.5)
         .help("how much each layer counts beside the one before")
         .show(ui, &mut texture.gain);
     figure("Distortion", "distortion", 0.0..=10.0)
-        .default_value(0.0)
         .help("how strongly turbulence bends the pattern")
         .show(ui, &mut texture.distortion);
 }

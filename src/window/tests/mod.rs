@@ -1,8 +1,11 @@
 //! The window driven by label and role, without a display.
 
+mod export;
 mod layout;
 mod panels;
+pub(in crate::window) mod parameters;
 mod promises;
+mod start;
 mod views;
 mod whole;
 

@@ -5,19 +5,20 @@ use crate::scene::description::{
     ColorOrTexture, IntegratorKind, LightKind, SceneDescription, ToneOperator, WardForm,
 };
 use crate::window::panels::{
-    DisplayState, Limits, PickFor, RenderFacts, Selection, SizeMode, camera_ui, display_ui,
-    lights_ui, materials_ui, objects_ui, render_ui, textures_ui,
+    Convergence, DisplayState, Limits, PickFor, RenderFacts, Selection, SizeMode, camera_ui,
+    display_ui, lights_ui, materials_ui, objects_ui, render_ui, textures_ui,
 };
 use crate::window::theme;
 use crate::window::views::View;
+use crate::window::widgets::take_reset;
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 /// What a panel under test edits.
-struct Bench {
-    scene: SceneDescription,
-    selection: Selection,
+pub(super) struct Bench {
+    pub(super) scene: SceneDescription,
+    pub(super) selection: Selection,
     size_mode: SizeMode,
     accelerator: usize,
     display: DisplayState,
@@ -28,7 +29,7 @@ struct Bench {
     limits: Limits,
 }
 
-type Panel = fn(&mut egui::Ui, &mut Bench);
+pub(super) type Panel = fn(&mut egui::Ui, &mut Bench);
 
 const CAMERA: Panel = |ui, bench| {
     let (unit, picking) = (&mut bench.unit_mm, &mut bench.picking);
@@ -49,18 +50,26 @@ const RENDER: Panel = |ui, bench| {
     let facts = RenderFacts {
         accelerators: &["kd-tree", "brute-force"],
         tree: vec![("Nodes", "12".to_owned())],
-        seconds: 1.0,
-        noise: &[(1, 20.0), (4, 10.0)],
+        convergence: Convergence {
+            noise: &[(1, 20.0), (4, 10.0)],
+            seconds: 1.0,
+            is_rendering: true,
+        },
     };
     let (size, accelerator) = (&mut bench.size_mode, &mut bench.accelerator);
     let limits = &mut bench.limits;
     render_ui(ui, &mut bench.scene.render, size, accelerator, limits, &facts);
 };
-const ALL: [Panel; 7] = [CAMERA, LIGHTS, MATERIALS, TEXTURES, OBJECTS, DISPLAY, RENDER];
+pub(super) const ALL: [Panel; 7] = [CAMERA, LIGHTS, MATERIALS, TEXTURES, OBJECTS, DISPLAY, RENDER];
 
 fn harness(panel: Panel) -> Harness<'static, Bench> {
-    let bench = Bench {
-        scene: small_scene(),
+    harness_of(panel, bench(small_scene()))
+}
+
+/// What edits that scene, with nothing chosen.
+pub(super) fn bench(scene: SceneDescription) -> Bench {
+    Bench {
+        scene,
         selection: Selection::default(),
         size_mode: SizeMode::Fixed,
         accelerator: 0,
@@ -70,14 +79,19 @@ fn harness(panel: Panel) -> Harness<'static, Bench> {
         lights_shown: false,
         lens_shown: false,
         limits: Limits::default(),
-    };
+    }
+}
+
+/// A panel by itself, as wide as in the window.
+pub(super) fn harness_of(panel: Panel, bench: Bench) -> Harness<'static, Bench> {
     let mut installed = false;
-    let mut harness = Harness::builder().with_size([320.0, 900.0]).build_ui_state(
+    let mut harness = Harness::builder().with_size([320.0, 1200.0]).build_ui_state(
         move |ui, bench: &mut Bench| {
             if !std::mem::replace(&mut installed, true) {
                 theme::install(ui.ctx());
             }
             panel(ui, bench);
+            take_reset(ui.ctx(), &mut bench.scene).expect("a reset keeps the scene valid");
         },
         bench,
     );

@@ -1,10 +1,8 @@
 //! The picture's views, the loupe, the lens in the picture, the pinned picture alone, and pixels of
 //! fine screens.
 
-use super::whole::{harness_of, scene_file, wait_until, window};
-use crate::loader::Source;
+use super::whole::{drag, scene_file, wait_until, window, window_at};
 use crate::window::app::App;
-use crate::window::state::Remembered;
 use crate::window::views::View;
 use egui::{Key, Role};
 use egui_kittest::Harness;
@@ -146,10 +144,7 @@ fn pictures_are_rendered_in_the_pixels_of_the_screen() {
     let folder = tempfile::tempdir().unwrap();
     let path = scene_file(folder.path());
     for per_point in [1.0, 1.5, 2.0] {
-        let ctx = egui::Context::default();
-        let source = Source::File(path.clone());
-        let app = App::new(&ctx, Remembered::default(), source, None).unwrap();
-        let mut harness = harness_of(app, [700.0, 460.0], per_point);
+        let mut harness = window_at(&path, [700.0, 460.0], per_point);
         wait_until(&mut harness, |app| {
             let image = app.picture_on_show().map(|image| image.size[0]);
             is_done(app) && image == Some(app.viewport.size[0] as usize)
@@ -166,7 +161,7 @@ fn pictures_are_rendered_in_the_pixels_of_the_screen() {
         let zoom = harness.state().viewport.zoom_percent;
         assert!((zoom - 200.0).abs() < 1e-3, "{zoom} at {per_point}");
         let bar = harness.get_by_role_and_label(Role::ScrollBar, "Scroll sideways").rect();
-        super::whole::drag(&mut harness, bar.center(), egui::vec2(500.0, 0.0));
+        drag(&mut harness, bar.center(), egui::vec2(500.0, 0.0));
         let scroll = harness.state().interface.display.scroll;
         assert_eq!((scroll.x, scroll.y), (1.0, 0.5), "the bar moves the picture elsewhere");
     }

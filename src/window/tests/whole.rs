@@ -23,29 +23,58 @@ pub(super) fn scene_file(folder: &Path) -> PathBuf {
 
 /// A window of that size on a scene, once it is loaded.
 pub(super) fn window(path: &Path, size: [f32; 2]) -> Harness<'static, App> {
-    window_with(path, size, None)
+    build(path, size, 1.0, Remembered::default(), None)
 }
 
 /// The same with a folder for what the program keeps for itself.
 fn window_with(path: &Path, size: [f32; 2], own: Option<PathBuf>) -> Harness<'static, App> {
+    build(path, size, 1.0, Remembered::default(), own)
+}
+
+/// The same with what an earlier window left.
+pub(super) fn window_of(
+    path: &Path,
+    size: [f32; 2],
+    remembered: Remembered,
+) -> Harness<'static, App> {
+    build(path, size, 1.0, remembered, None)
+}
+
+/// The same with that many pixels in a point; `size` is in points.
+pub(super) fn window_at(path: &Path, size: [f32; 2], per_point: f32) -> Harness<'static, App> {
+    build(path, size, per_point, Remembered::default(), None)
+}
+
+fn build(
+    path: &Path,
+    size: [f32; 2],
+    per_point: f32,
+    remembered: Remembered,
+    own: Option<PathBuf>,
+) -> Harness<'static, App> {
     let source = Source::File(path.to_owned());
     let ctx = egui::Context::default();
-    let app = App::new(&ctx, Remembered::default(), source, own).expect("the threads start");
-    harness_of(app, size, 1.0)
+    let app = App::new(&ctx, remembered, source, own).expect("the threads start");
+    harness_of(app, size, per_point)
 }
 
 /// A window of that size in points around an app, once its scene is loaded.
-pub(super) fn harness_of(app: App, size: [f32; 2], pixels_per_point: f32) -> Harness<'static, App> {
+pub(super) fn harness_of(app: App, size: [f32; 2], per_point: f32) -> Harness<'static, App> {
+    let theme = app.interface.theme;
     let mut installed = false;
     let frame = move |ui: &mut egui::Ui, app: &mut App| {
         if !std::mem::replace(&mut installed, true) {
             theme::install(ui.ctx());
+            // The app was made with another context than the harness's.
+            ui.ctx().set_theme(theme);
         }
         app.take_news(ui.ctx());
         app.frame_ui(ui);
     };
-    let builder = Harness::builder().with_size(size).with_pixels_per_point(pixels_per_point);
-    let mut harness = builder.build_ui_state(frame, app);
+    let mut harness = Harness::builder()
+        .with_size(size)
+        .with_pixels_per_point(per_point)
+        .build_ui_state(frame, app);
     wait_until(&mut harness, |app| app.files.has_scene);
     harness
 }
@@ -277,4 +306,21 @@ fn the_wheel_moves_the_camera_over_the_picture_and_nowhere_else() {
     turn(&mut harness, picture.center());
     let after = &harness.state().document.description.camera;
     assert!(after.eye[2] < before.eye[2] * 0.95, "not nearer: {:?}", after.eye);
+}
+
+#[test]
+fn keys_come_from_the_file_and_what_is_wrong_in_it_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene_file(folder.path());
+    let own = folder.path().join("own");
+    std::fs::create_dir(&own).unwrap();
+    std::fs::write(own.join("keys.toml"), "toggle-lens = \"L\"\npuase = \"P\"\n").unwrap();
+    let mut harness = window_with(&path, [1024.0, 700.0], Some(own));
+    assert!(harness.query_by_label_contains("did you mean pause?").is_some(), "not told");
+    for (key, closes) in [(egui::Key::D, false), (egui::Key::L, true)] {
+        harness.key_press(key);
+        harness.run_steps(2);
+        let radius = harness.state().document.description.camera.aperture_radius;
+        assert_eq!(radius == 0.0, closes, "{key:?} leaves the lens at {radius}");
+    }
 }

@@ -1,0 +1,248 @@
+//! The start page: a place to drop a file, the files opened before, and the gallery.
+
+use super::background::Background;
+use super::theme;
+use crate::io::gallery::{self, GALLERY, PICTURE_SIZE};
+use crate::io::snapshot::read_pixels;
+use egui::{
+    Align2, Button, Color32, ColorImage, CursorIcon, Rect, RichText, Sense, Stroke, StrokeKind,
+    TextStyle, TextureHandle, TextureOptions, Ui, Vec2, pos2,
+};
+use std::path::PathBuf;
+
+/// The page is no wider than this, in points.
+const WIDEST: f32 = 1480.0;
+/// Width of the column with recent files, in points.
+const SIDE_WIDTH: f32 = 272.0;
+/// A picture of the gallery is at least this wide, in points.
+const CARD_WIDTH: f32 = 208.0;
+const GAP: f32 = 16.0;
+/// Height of the title below a picture.
+const TITLE_HEIGHT: f32 = 26.0;
+
+/// What was chosen on the page.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum StartChoice {
+    /// Ask for a file.
+    Open,
+    /// Open the gallery scene of that index.
+    Gallery(usize),
+    /// Open that file.
+    File(PathBuf),
+    /// Back to the open scene.
+    Back,
+}
+
+/// The pictures of the gallery: made ready on a thread of their own when the page is first shown.
+pub(super) struct Thumbnails {
+    thread: Background<(), Vec<Option<ColorImage>>>,
+    asked: bool,
+    shown: Vec<Option<TextureHandle>>,
+}
+
+impl Thumbnails {
+    /// Starts the thread; `wake` is called when the pictures are ready.
+    ///
+    /// # Errors
+    /// When the system has no thread left.
+    pub(super) fn new(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+        let read = |()| GALLERY.iter().map(|entry| thumbnail(entry.name)).collect();
+        let thread = Background::new("gallery pictures", read, wake)?;
+        Ok(Self { thread, asked: false, shown: Vec::new() })
+    }
+
+    fn update(&mut self, ctx: &egui::Context) {
+        if !std::mem::replace(&mut self.asked, true) {
+            self.thread.order(());
+        }
+        if let Some(images) = self.thread.take() {
+            let load = |image| ctx.load_texture("gallery", image, TextureOptions::LINEAR);
+            self.shown = images.into_iter().map(|image| image.map(load)).collect();
+        }
+    }
+}
+
+/// The picture of a gallery scene, as the program rendered it.
+fn thumbnail(name: &str) -> Option<ColorImage> {
+    let pixels = read_pixels(gallery::picture(name)?, PICTURE_SIZE).ok()?;
+    let size = [PICTURE_SIZE.0 as usize, PICTURE_SIZE.1 as usize];
+    Some(ColorImage::from_rgb(size, &pixels))
+}
+
+/// Shows the page. `can_return` says whether a scene is open behind it.
+pub(super) fn start_ui(
+    ui: &mut Ui,
+    thumbnails: &mut Thumbnails,
+    recent: &[PathBuf],
+    can_return: bool,
+) -> Option<StartChoice> {
+    thumbnails.update(ui.ctx());
+    ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
+    let mut chosen = None;
+    egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let room = ui.available_width() - 2.0 * GAP;
+        let width = room.min(WIDEST);
+        ui.horizontal_top(|ui| {
+            ui.spacing_mut().item_spacing = Vec2::ZERO;
+            ui.add_space(GAP + (room - width) / 2.0);
+            ui.vertical(|ui| {
+                ui.set_width(width);
+                ui.add_space(GAP);
+                ui.horizontal_top(|ui| {
+                    ui.vertical(|ui| {
+                        ui.set_width(SIDE_WIDTH);
+                        side_ui(ui, recent, can_return, &mut chosen);
+                    });
+                    ui.add_space(2.0 * GAP);
+                    ui.vertical(|ui| gallery_ui(ui, &thumbnails.shown, &mut chosen));
+                });
+                ui.add_space(GAP);
+            });
+        });
+    });
+    chosen
+}
+
+fn side_ui(ui: &mut Ui, recent: &[PathBuf], can_return: bool, chosen: &mut Option<StartChoice>) {
+    ui.heading("Penumbra");
+    ui.add_space(4.0);
+    ui.weak("See how a picture is made of light.");
+    ui.add_space(GAP);
+    drop_zone(ui);
+    ui.add_space(10.0);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let open = Button::new("Open a file…").min_size(Vec2::new(110.0, 28.0));
+        if ui.add(open).on_hover_text("a scene, a mesh or a snapshot").clicked() {
+            *chosen = Some(StartChoice::Open);
+        }
+        let back = Button::new("Back to the scene").min_size(Vec2::new(110.0, 28.0));
+        if can_return && ui.add(back).on_hover_text("closes this page (Esc)").clicked() {
+            *chosen = Some(StartChoice::Back);
+        }
+    });
+    ui.add_space(GAP + 4.0);
+    ui.strong("Recent");
+    ui.add_space(4.0);
+    if recent.is_empty() {
+        ui.weak("Files that you open are listed here.");
+    }
+    for path in recent {
+        if recent_ui(ui, path) {
+            *chosen = Some(StartChoice::File(path.clone()));
+        }
+    }
+}
+
+/// Where a file can be dropped; it can be dropped anywhere else in the window too.
+fn drop_zone(ui: &mut Ui) {
+    let (rect, response) =
+        ui.allocate_exact_size(Vec2::new(ui.available_width(), 108.0), Sense::hover());
+    let told = "Drop a scene, a mesh or a snapshot";
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, told));
+    let is_over = ui.input(|input| !input.raw.hovered_files.is_empty());
+    let color = if is_over { theme::accent(ui.visuals()) } else { ui.visuals().weak_text_color() };
+    let fill = if is_over { color.gamma_multiply(0.12) } else { Color32::TRANSPARENT };
+    ui.painter().rect_filled(rect, 8.0, fill);
+    let edge = rect.shrink(1.0);
+    let corners = [
+        edge.left_top(),
+        edge.right_top(),
+        edge.right_bottom(),
+        edge.left_bottom(),
+        edge.left_top(),
+    ];
+    let stroke = Stroke::new(1.0, color.gamma_multiply(if is_over { 1.0 } else { 0.6 }));
+    ui.painter().extend(egui::Shape::dashed_line(&corners, stroke, 6.0, 5.0));
+    let font = TextStyle::Body.resolve(ui.style());
+    ui.painter().text(rect.center(), Align2::CENTER_CENTER, told, font, color);
+}
+
+/// A line for a file opened before; gives back whether it was clicked.
+fn recent_ui(ui: &mut Ui, path: &std::path::Path) -> bool {
+    let (rect, response) =
+        ui.allocate_exact_size(Vec2::new(ui.available_width(), 40.0), Sense::click());
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    if response.hovered() || response.has_focus() {
+        ui.painter().rect_filled(rect, 4.0, ui.visuals().widgets.hovered.weak_bg_fill);
+    }
+    let inner = rect.shrink2(Vec2::new(8.0, 4.0));
+    let lines = ui.new_child(egui::UiBuilder::new().max_rect(inner));
+    let mut lines = lines;
+    lines.spacing_mut().item_spacing.y = 0.0;
+    lines.add(egui::Label::new(name).truncate());
+    let folder = path.parent().unwrap_or(path).display().to_string();
+    lines.add(egui::Label::new(RichText::new(folder).weak().small()).truncate());
+    response
+        .on_hover_cursor(CursorIcon::PointingHand)
+        .on_hover_text(path.display().to_string())
+        .clicked()
+}
+
+fn gallery_ui(ui: &mut Ui, pictures: &[Option<TextureHandle>], chosen: &mut Option<StartChoice>) {
+    ui.heading("Gallery");
+    ui.add_space(4.0);
+    ui.weak("Scenes that come with the program, each about one thing.");
+    ui.add_space(GAP);
+    let room = ui.available_width();
+    let n_columns = ((room + GAP) / (CARD_WIDTH + GAP)).floor().clamp(1.0, 4.0) as usize;
+    let width = ((room - GAP * (n_columns - 1) as f32) / n_columns as f32).floor();
+    for (row, entries) in GALLERY.chunks(n_columns).enumerate() {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = GAP;
+            for (column, entry) in entries.iter().enumerate() {
+                let index = row * n_columns + column;
+                let picture = pictures.get(index).and_then(Option::as_ref);
+                if card_ui(ui, width, entry.title, picture) {
+                    *chosen = Some(StartChoice::Gallery(index));
+                }
+            }
+        });
+        ui.add_space(GAP - 4.0);
+    }
+}
+
+/// A picture with its title; gives back whether it was clicked.
+fn card_ui(ui: &mut Ui, width: f32, title: &str, picture: Option<&TextureHandle>) -> bool {
+    let height = (width * PICTURE_SIZE.1 as f32 / PICTURE_SIZE.0 as f32).round();
+    let size = Vec2::new(width, height + TITLE_HEIGHT);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, title));
+    let image = Rect::from_min_size(rect.min, Vec2::new(width, height));
+    match picture {
+        Some(picture) => egui::Image::new(picture)
+            .corner_radius(6)
+            .fit_to_exact_size(image.size())
+            .paint_at(ui, image),
+        None => {
+            ui.painter().rect_filled(image, 6.0, ui.visuals().extreme_bg_color);
+        }
+    }
+    let is_active = response.hovered() || response.has_focus();
+    if is_active {
+        let stroke = Stroke::new(2.0, theme::accent(ui.visuals()));
+        ui.painter().rect_stroke(image, 6.0, stroke, StrokeKind::Outside);
+    }
+    let color =
+        if is_active { ui.visuals().strong_text_color() } else { ui.visuals().text_color() };
+    let font = TextStyle::Body.resolve(ui.style());
+    let at = pos2(image.left() + 1.0, image.bottom() + TITLE_HEIGHT / 2.0);
+    let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
+    painter.text(at, Align2::LEFT_CENTER, title, font, color);
+    response.on_hover_cursor(CursorIcon::PointingHand).clicked()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_scene_of_the_gallery_has_its_picture() {
+        for entry in GALLERY {
+            let picture = thumbnail(entry.name);
+            let size = picture.as_ref().map(|picture| picture.size);
+            assert_eq!(size, Some([480, 270]), "{}", entry.name);
+        }
+    }
+}
