@@ -4,6 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use glam::Vec3;
 use penumbra::geometry::AcceleratorKind;
+use penumbra::math::portable::tan_f64;
 use penumbra::render::features::{cost_map, feature_map, same_first_hits};
 use penumbra::render::{Feature, PixelMap, RenderJob, Seen, World};
 
@@ -65,7 +66,7 @@ fn first_hits_are_where_geometry_says() {
     assert!(near(ball.albedo, Vec3::new(1.0, 0.3, 0.3)), "its albedo is {}", ball.albedo);
 
     let floor = map.get(16, 32).unwrap();
-    let slope = 20.0_f32.to_radians().tan() * (65.0 / 33.0 - 1.0);
+    let slope = tan_f64(20.0_f64.to_radians()) as f32 * (65.0 / 33.0 - 1.0);
     assert_eq!(floor.seen, Seen::Object(1), "the floor");
     assert!((floor.depth - 1.0 / slope).abs() < 1e-4, "the floor is {} away", floor.depth);
     assert!(near(floor.normal, Vec3::Y), "its normal is {}", floor.normal);

@@ -25,7 +25,7 @@ pub(in crate::window) fn camera_ui(
     lens_ui(ui, camera, scene_unit_mm, picking);
     let help = "tints what is sharp, with lines where surfaces cross the plane of focus (green) and \
                 the limits of sharpness (blue, orange); also while the lens is dragged";
-    switch(ui, "Mark what is sharp", help, lens_shown);
+    switch(ui, "Mark what is sharp", "", help, lens_shown);
     subheading(ui, "Place");
     let reach = orbit::focal_distance(camera);
     let speed = (reach * 0.004).max(1e-5);

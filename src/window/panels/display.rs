@@ -51,7 +51,7 @@ pub(in crate::window) fn display_ui(
 ) {
     row(ui, "View", "what is shown of each pixel (1 to 8)", |ui| {
         let names = View::ALL.map(View::name);
-        if let Some(index) = pick_one(ui, "View", state.view.name(), names) {
+        if let Some(index) = pick_one(ui, "View", "", state.view.name(), names) {
             state.view = View::ALL[index];
         }
     });

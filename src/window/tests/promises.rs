@@ -240,6 +240,9 @@ fn nothing_of_the_display_ever_restarts() {
     assert_eq!(exposure, 0.5, "the keys do nothing");
 }
 
+/// Something that a hand does.
+type Edit<'a> = &'a dyn Fn(&mut Harness<'_, App>);
+
 /// Whatever a hand does to a scene can be taken back, step by step, to the last digit, and made
 /// again.
 #[test]
@@ -248,7 +251,7 @@ fn every_edit_can_be_taken_back_and_made_again() {
     let mut harness = window(&scene_file(folder.path()), [1024.0, 700.0]);
     let middle = harness.get_by_role_and_label(Role::Canvas, "Picture").rect().center();
     let mut scenes = vec![harness.state().document.description.clone()];
-    let edits: [&dyn Fn(&mut Harness<'_, App>); 5] = [
+    let edits: [Edit<'_>; 5] = [
         &|harness| drag(harness, middle, egui::vec2(60.0, 20.0)),
         &|harness| harness.key_press(Key::D),
         &|harness| harness.key_press(Key::E),

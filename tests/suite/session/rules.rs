@@ -459,9 +459,9 @@ fn a_drag_over_a_view_always_shows_something() {
             }
             let was_preview = call.question == Question::Preview && call.seed == seed;
             if call.is_stopped() {
-                call.until_stopped()
+                call.until_stopped();
             } else {
-                drop(call.run())
+                drop(call.run());
             }
             if was_preview {
                 break;
