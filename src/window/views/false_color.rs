@@ -117,9 +117,12 @@ fn cost(map: &PixelMap<TraversalCost>) -> Painted {
 fn samples(map: &PixelMap<Sampling>) -> Painted {
     let value = |pixel: &Sampling| f64::from(pixel.n_samples);
     let (low, high) = range(map, value, 0.0, 1.0);
-    let note =
-        if low < high { format!("from {low} to {high}") } else { format!("{high} in every pixel") };
-    let scale = Scale::Linear { high: rounded_up(high.max(1.0)) };
+    let (note, scale) = if low < high {
+        let scale = Scale::Logarithmic { low: rounded_down(low), high: rounded_up(high) };
+        (format!("from {low} to {high}"), scale)
+    } else {
+        (format!("{high} in every pixel"), Scale::Linear { high: rounded_up(high.max(1.0)) })
+    };
     let legend = Legend::figures(View::Samples, "samples", &note, Ramp::LAND, scale);
     figures(map, |pixel| Some(value(pixel)), legend)
 }
