@@ -236,7 +236,7 @@ impl<R: Renderer> Driver<'_, R> {
         let n_pixels = u64::from(work.job.width) * u64::from(work.job.height);
         let wanted = work.maps.absent(self.shared.orders().wanted);
         if wanted != Wanted::NOTHING {
-            let scale = plan::preview_scale(n_pixels, self.map_rate, PREVIEW_SECS);
+            let scale = self.map_scale(&work.job);
             self.survey(work, scale, wanted, &self.shared.stop_all);
         }
         let mut scale = plan::preview_scale(n_pixels, self.rate, PREVIEW_SECS);
@@ -269,10 +269,17 @@ impl<R: Renderer> Driver<'_, R> {
         true
     }
 
-    /// The wanted maps in full size, shown with the picture that is there.
+    /// The wanted maps in full size, or coarse where there is none yet, shown with the picture that
+    /// is there.
     fn finish_maps(&mut self, work: &mut Work<R::World>) {
         let wanted = work.unfinished(self.shared.orders().wanted);
-        self.survey(work, 1, wanted, &self.shared.stop_refining);
+        let absent = work.maps.absent(wanted);
+        if absent == Wanted::NOTHING {
+            self.survey(work, 1, wanted, &self.shared.stop_refining);
+        } else {
+            let scale = self.map_scale(&work.job);
+            self.survey(work, scale, absent, &self.shared.stop_refining);
+        }
         let shown = lock(&self.shared.slot).clone();
         let Some(shown) = shown.filter(|frame| frame.generation == work.generation) else { return };
         if wanted.sampling {
@@ -281,6 +288,12 @@ impl<R: Renderer> Driver<'_, R> {
         self.sequence += 1;
         let (sequence, maps) = (self.sequence, work.maps.clone());
         self.publish(work, Frame { sequence, maps, ..Frame::clone(&shown) });
+    }
+
+    /// By how much a coarse map is smaller than the picture.
+    fn map_scale(&self, job: &RenderJob) -> u32 {
+        let n_pixels = u64::from(job.width) * u64::from(job.height);
+        plan::preview_scale(n_pixels, self.map_rate, PREVIEW_SECS)
     }
 
     /// Makes maps of a picture smaller by `scale`.

@@ -442,6 +442,28 @@ fn maps_are_made_when_the_picture_is_done() {
     stage.assert_asleep();
 }
 
+/// A view of a large picture is there at once, coarse, and then sharp.
+#[test]
+fn a_large_map_comes_coarse_first() {
+    const WIDE: u32 = 800;
+    let stage = Stage::new();
+    stage.session.set_paused(true);
+    stage.submit(1, WIDE, 4);
+    stage.run_until_phase(&Phase::Paused);
+    stage.session.want(FEATURES);
+    let mut widths = Vec::new();
+    for is_coarse in [true, false] {
+        let call = stage.call();
+        assert_eq!(call.question, Question::Features { is_coarse }, "asked");
+        let known = stage.session.latest().unwrap();
+        call.run();
+        stage.wait("map", |session| !Arc::ptr_eq(&known, &session.latest().unwrap()));
+        widths.push(stage.session.latest().unwrap().maps.features.as_ref().unwrap().width);
+    }
+    assert!(widths[0] < WIDE && widths[1] == WIDE, "maps of widths {widths:?}");
+    stage.assert_asleep();
+}
+
 /// A drag over a view: each job has a coarse map with its first picture, which no edit stops.
 #[test]
 fn a_drag_over_a_view_always_shows_something() {
