@@ -22,8 +22,8 @@ use penumbra::scene::description::NormalsKind;
 use rayon::prelude::*;
 
 const WIDTH: u32 = 1024;
-/// Rays that one call traces: a tile.
-const BATCH: usize = 256;
+/// Rays that one call traces: a wave of eight samples a pixel of a tile.
+const BATCH: usize = 2048;
 const REPETITIONS: usize = 5;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -131,7 +131,7 @@ impl RaySet {
         // Tiles in chunks, so that the cost of sharing them out is not measured.
         let parts: Vec<(usize, f64)> = self
             .batches
-            .par_chunks(16)
+            .par_chunks(2)
             .map(|batches| {
                 let (mut hits, mut blocked) = (Vec::new(), Vec::new());
                 let (mut n_hits, mut checksum) = (0, 0.0);

@@ -4,7 +4,8 @@
 //! machine; packets share part of the work.
 
 use crate::geometry::kd_tree::Walk;
-use crate::geometry::{Geometry, Hit, Nearest};
+use crate::geometry::nearest::Search;
+use crate::geometry::{Geometry, Hit};
 use crate::math::Ray;
 
 /// Work done for one ray.
@@ -26,20 +27,20 @@ impl TraversalCost {
 impl Geometry {
     /// What a ray meets first, as [`Geometry::intersect`] finds it, and what that takes.
     pub fn intersect_counted(&self, ray: &Ray) -> (Option<Hit>, TraversalCost) {
-        let mut nearest = Nearest::new(ray);
+        let mut search = Search::new(ray);
         let mut cost = TraversalCost::default();
         for id in &self.listed {
             let instance = &self.instances[*id as usize];
             if let Some(bounds) = self.box_of(instance) {
                 cost.n_nodes += 1;
-                let clipped = Ray { t_max: nearest.t(), ..*ray };
+                let clipped = Ray { t_max: search.nearest.t(), ..*ray };
                 if Walk::new(&clipped, &bounds).is_none() {
                     continue;
                 }
             }
-            instance.intersect_counted(ray, *id, self.kind, &mut nearest, &mut cost);
+            instance.intersect_counted(ray, *id, self.kind, &mut search, &mut cost);
         }
-        let clipped = Ray { t_max: nearest.t(), ..*ray };
+        let clipped = Ray { t_max: search.nearest.t(), ..*ray };
         if let Some(tree) = &self.tree
             && let Some(walk) = Walk::new(&clipped, &tree.bounds)
         {
@@ -50,13 +51,13 @@ impl Geometry {
                 |range| {
                     for id in &tree.items[range] {
                         let instance = &self.instances[*id as usize];
-                        instance.intersect_counted(ray, *id, self.kind, &mut nearest, &mut cost);
+                        instance.intersect_counted(ray, *id, self.kind, &mut search, &mut cost);
                     }
-                    nearest.t()
+                    search.nearest.t()
                 },
             );
             cost.n_nodes += n_entered;
         }
-        (nearest.hit(), cost)
+        (search.nearest.hit(), cost)
     }
 }

@@ -3,8 +3,9 @@
 use glam::{DVec3, Vec3};
 
 use crate::geometry::mesh_tree::TracedMesh;
-use crate::geometry::{AcceleratorKind, Nearest, Shape, TraversalCost};
-use crate::math::{Aabb, Ray, RayBatch, Transform};
+use crate::geometry::nearest::{Nearest, Search};
+use crate::geometry::{AcceleratorKind, Shape, TraversalCost};
+use crate::math::{Aabb, PrimitiveId, Ray, RayBatch, Transform};
 
 /// A shape and the transform that puts it into the world.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,17 +46,17 @@ impl Instance {
         self.bounds.map(|bounds| Aabb { min: bounds.min - pad, max: bounds.max + pad })
     }
 
-    /// Takes the nearest hit of a ray of the world into `nearest`.
+    /// Takes the hits of a ray of the world into a search.
     pub(super) fn intersect(
         &self,
         ray: &Ray,
         object: u32,
         kind: AcceleratorKind,
-        nearest: &mut Nearest,
+        search: &mut Search,
     ) {
         match &self.shape {
             Shape::Mesh(mesh) => self.with_object_ray(ray, mesh, |ray| {
-                mesh.tree(kind).intersect(ray, object, nearest);
+                mesh.tree(kind).intersect(ray, object, search);
             }),
             Shape::Sphere { .. }
             | Shape::Plane { .. }
@@ -63,7 +64,7 @@ impl Instance {
             | Shape::Cone { .. }
             | Shape::Cylinder { .. } => {
                 for (t, primitive) in self.crossings(ray).into_iter().flatten() {
-                    nearest.offer(t as f32, object, primitive);
+                    search.offer(t as f32, PrimitiveId { object, primitive });
                 }
             }
         }
@@ -75,12 +76,12 @@ impl Instance {
         ray: &Ray,
         object: u32,
         kind: AcceleratorKind,
-        nearest: &mut Nearest,
+        search: &mut Search,
         cost: &mut TraversalCost,
     ) {
         match &self.shape {
             Shape::Mesh(mesh) => self.with_object_ray(ray, mesh, |ray| {
-                mesh.tree(kind).intersect_counted(ray, object, nearest, cost);
+                mesh.tree(kind).intersect_counted(ray, object, search, cost);
             }),
             Shape::Sphere { .. }
             | Shape::Plane { .. }
@@ -88,7 +89,7 @@ impl Instance {
             | Shape::Cone { .. }
             | Shape::Cylinder { .. } => {
                 cost.n_primitives += 1;
-                self.intersect(ray, object, kind, nearest);
+                self.intersect(ray, object, kind, search);
             }
         }
     }
@@ -108,9 +109,9 @@ impl Instance {
             | Shape::Box { .. }
             | Shape::Cone { .. }
             | Shape::Cylinder { .. } => {
-                let mut nearest = Nearest::new(ray);
-                self.intersect(ray, object, kind, &mut nearest);
-                nearest.is_hit()
+                let mut search = Search::new(ray);
+                self.intersect(ray, object, kind, &mut search);
+                search.nearest.is_hit()
             }
         }
     }
@@ -139,7 +140,10 @@ impl Instance {
             | Shape::Cone { .. }
             | Shape::Cylinder { .. } => {
                 for (index, nearest) in nearest.iter_mut().enumerate() {
-                    self.intersect(&rays.ray(index), object, kind, nearest);
+                    let ray = rays.ray(index);
+                    let mut search = Search::from(&ray, *nearest);
+                    self.intersect(&ray, object, kind, &mut search);
+                    *nearest = search.nearest;
                 }
             }
         }

@@ -8,10 +8,11 @@ use glam::{DVec3, Vec3};
 
 use crate::geometry::kd_tree::{self, Item, KdTree, Split, Walk};
 use crate::geometry::mesh::Mesh;
+use crate::geometry::nearest::{Nearest, Search};
 use crate::geometry::triangle::ShearedRay;
 use crate::geometry::wide_bvh::WideBvh;
-use crate::geometry::{AcceleratorKind, Nearest, TraversalCost};
-use crate::math::{Aabb, Ray, RayBatch};
+use crate::geometry::{AcceleratorKind, TraversalCost};
+use crate::math::{Aabb, PrimitiveId, Ray, RayBatch};
 
 /// A mesh with the trees that have been asked for; each is built once, on first use.
 #[derive(Debug)]
@@ -84,21 +85,21 @@ impl MeshTree {
         Self { structure, build_secs: start.elapsed().as_secs_f64() }
     }
 
-    /// Takes the nearest hit of a ray in object space into `nearest`.
-    pub(super) fn intersect(&self, ray: &Ray, object: u32, nearest: &mut Nearest) {
+    /// Takes the hits of a ray in object space into a search.
+    pub(super) fn intersect(&self, ray: &Ray, object: u32, search: &mut Search) {
         if let Structure::WideBvh(bvh) = &self.structure {
-            return bvh.intersect(ray, object, nearest);
+            return bvh.intersect(ray, object, search);
         }
         let mut clipped = *ray;
-        clipped.t_max = nearest.t();
+        clipped.t_max = search.nearest.t();
         let sheared = ShearedRay::new(ray);
         self.visit(&clipped, |triangles| {
             for triangle in triangles {
                 if let Some(t) = sheared.intersect(triangle.corners) {
-                    nearest.offer(t, object, triangle.id);
+                    search.offer(t, PrimitiveId { object, primitive: triangle.id });
                 }
             }
-            nearest.t()
+            search.nearest.t()
         });
     }
 
@@ -107,24 +108,24 @@ impl MeshTree {
         &self,
         ray: &Ray,
         object: u32,
-        nearest: &mut Nearest,
+        search: &mut Search,
         cost: &mut TraversalCost,
     ) {
         let sheared = ShearedRay::new(ray);
         let mut n_triangles = 0;
+        let clipped = Ray { t_max: search.nearest.t(), ..*ray };
         let mut test = |triangles: &[Triangle]| {
             n_triangles += triangles.len() as u32;
             for triangle in triangles {
                 if let Some(t) = sheared.intersect(triangle.corners) {
-                    nearest.offer(t, object, triangle.id);
+                    search.offer(t, PrimitiveId { object, primitive: triangle.id });
                 }
             }
-            nearest.t()
+            search.nearest.t()
         };
         match &self.structure {
-            Structure::WideBvh(bvh) => bvh.intersect_counted(ray, object, nearest, cost),
+            Structure::WideBvh(bvh) => bvh.intersect_counted(ray, object, search, cost),
             Structure::KdTree(tree, triangles) => {
-                let clipped = Ray { t_max: test(&[]), ..*ray };
                 if let Some(walk) = Walk::new(&clipped, &tree.bounds) {
                     let enter = || cost.n_nodes += 1;
                     tree.walk_counting(&walk, enter, |range| test(&triangles[range]));
@@ -143,19 +144,19 @@ impl MeshTree {
             return bvh.occluded(ray, object);
         }
         let sheared = ShearedRay::new(ray);
-        let mut probe = Nearest::new(ray);
+        let mut probe = Search::new(ray);
         self.visit(ray, |triangles| {
             for triangle in triangles {
                 if let Some(t) = sheared.intersect(triangle.corners) {
-                    probe.offer(t, object, triangle.id);
-                    if probe.is_hit() {
+                    probe.offer(t, PrimitiveId { object, primitive: triangle.id });
+                    if probe.nearest.is_hit() {
                         return -1.0;
                     }
                 }
             }
             ray.t_max
         });
-        probe.is_hit()
+        probe.nearest.is_hit()
     }
 
     /// [`MeshTree::intersect`] for many rays, one `nearest` each.
@@ -164,7 +165,10 @@ impl MeshTree {
             return bvh.intersect_batch(rays, object, nearest);
         }
         for (index, nearest) in nearest.iter_mut().enumerate() {
-            self.intersect(&rays.ray(index), object, nearest);
+            let ray = rays.ray(index);
+            let mut search = Search::from(&ray, *nearest);
+            self.intersect(&ray, object, &mut search);
+            *nearest = search.nearest;
         }
     }
 

@@ -22,13 +22,14 @@ mod wide_bvh;
 
 use crate::color::Rgb;
 use crate::geometry::kd_tree::{Item, KdTree, Split, Walk};
+use crate::geometry::nearest::{Nearest, Search};
 use crate::geometry::select::Selector;
 use crate::math::{Aabb, PrimitiveId, Ray, RayBatch};
 
 pub use cost::TraversalCost;
 pub use instance::Instance;
 pub use mesh_tree::{MeshTree, TracedMesh};
-pub use nearest::{Hit, Nearest};
+pub use nearest::Hit;
 pub use shape::Shape;
 pub use surface::Surface;
 
@@ -156,22 +157,18 @@ impl Geometry {
 
     /// What each ray meets first; `hits` is overwritten, one entry a ray.
     pub fn intersect(&self, rays: &RayBatch, hits: &mut Vec<Option<Hit>>) {
-        let mut nearest: Vec<Nearest> =
-            (0..rays.len()).map(|i| Nearest::new(&rays.ray(i))).collect();
-        let mut limits = rays.t_max.clone();
+        let mut nearest: Vec<Nearest> = rays.t_max.iter().map(|t| Nearest::new(*t)).collect();
         let mut selector = Selector::new(rays);
         let mut selected = Vec::new();
         for id in &self.listed {
             let instance = &self.instances[*id as usize];
             let Some(bounds) = self.box_of(instance) else {
                 instance.intersect_batch(rays, *id, self.kind, &mut nearest);
-                limits.iter_mut().zip(&nearest).for_each(|(limit, nearest)| *limit = nearest.t());
                 continue;
             };
-            selector.select(&bounds, &limits, &mut selected);
+            selector.select(&bounds, |place| nearest[place].t(), &mut selected);
             if selected.len() == rays.len() {
                 instance.intersect_batch(rays, *id, self.kind, &mut nearest);
-                limits.iter_mut().zip(&nearest).for_each(|(limit, nearest)| *limit = nearest.t());
             } else if !selected.is_empty() {
                 let mut theirs: Vec<Nearest> =
                     selected.iter().map(|place| nearest[*place as usize]).collect();
@@ -179,13 +176,15 @@ impl Geometry {
                 instance.intersect_batch(&gathered, *id, self.kind, &mut theirs);
                 for (place, theirs) in selected.iter().zip(theirs) {
                     nearest[*place as usize] = theirs;
-                    limits[*place as usize] = theirs.t();
                 }
             }
         }
         if self.tree.is_some() {
             for (index, nearest) in nearest.iter_mut().enumerate() {
-                self.collect_from_tree(&rays.ray(index), |_| true, nearest);
+                let ray = rays.ray(index);
+                let mut search = Search::from(&ray, *nearest);
+                self.collect_from_tree(&ray, |_| true, &mut search);
+                *nearest = search.nearest;
             }
         }
         hits.clear();
@@ -238,22 +237,16 @@ impl Geometry {
     ) {
         blocked.clear();
         blocked.resize(rays.len(), false);
-        let mut limits = rays.t_max.clone();
         let mut selector = Selector::new(rays);
         let mut selected = Vec::new();
-        let done = |is_blocked: bool, limit: &mut f32| {
-            if is_blocked {
-                *limit = -1.0;
-            }
-        };
         for id in self.listed.iter().filter(|id| take(**id)) {
             let instance = &self.instances[*id as usize];
             let Some(bounds) = self.box_of(instance) else {
                 instance.occluded_batch(rays, *id, self.kind, blocked);
-                limits.iter_mut().zip(&*blocked).for_each(|(limit, b)| done(*b, limit));
                 continue;
             };
-            selector.select(&bounds, &limits, &mut selected);
+            let limit = |place: usize| if blocked[place] { -1.0 } else { rays.t_max[place] };
+            selector.select(&bounds, limit, &mut selected);
             if selected.is_empty() {
                 continue;
             }
@@ -261,7 +254,6 @@ impl Geometry {
             instance.occluded_batch(&rays.gathered(&selected), *id, self.kind, &mut theirs);
             for (place, is_blocked) in selected.iter().zip(theirs) {
                 blocked[*place as usize] |= is_blocked;
-                done(is_blocked, &mut limits[*place as usize]);
             }
         }
         if self.tree.is_some() {
@@ -293,27 +285,27 @@ impl Geometry {
         after: (f32, PrimitiveId),
         take: impl Fn(u32) -> bool,
     ) -> Option<Hit> {
-        let mut nearest = Nearest::after(ray, after);
-        self.collect(ray, take, &mut nearest);
-        nearest.hit()
+        let mut search = Search::after(ray, after);
+        self.collect(ray, take, &mut search);
+        search.nearest.hit()
     }
 
-    fn collect(&self, ray: &Ray, take: impl Fn(u32) -> bool, nearest: &mut Nearest) {
+    fn collect(&self, ray: &Ray, take: impl Fn(u32) -> bool, search: &mut Search) {
         for id in self.listed.iter().copied().filter(|id| take(*id)) {
-            self.instances[id as usize].intersect(ray, id, self.kind, nearest);
+            self.instances[id as usize].intersect(ray, id, self.kind, search);
         }
-        self.collect_from_tree(ray, take, nearest);
+        self.collect_from_tree(ray, take, search);
     }
 
-    fn collect_from_tree(&self, ray: &Ray, take: impl Fn(u32) -> bool, nearest: &mut Nearest) {
+    fn collect_from_tree(&self, ray: &Ray, take: impl Fn(u32) -> bool, search: &mut Search) {
         let Some(tree) = &self.tree else { return };
-        let clipped = Ray { t_max: nearest.t(), ..*ray };
+        let clipped = Ray { t_max: search.nearest.t(), ..*ray };
         let Some(walk) = Walk::new(&clipped, &tree.bounds) else { return };
         tree.walk(&walk, |range| {
             for id in tree.items[range].iter().copied().filter(|id| take(*id)) {
-                self.instances[id as usize].intersect(ray, id, self.kind, nearest);
+                self.instances[id as usize].intersect(ray, id, self.kind, search);
             }
-            nearest.t()
+            search.nearest.t()
         });
     }
 

@@ -1,8 +1,8 @@
 //! The watertight ray-triangle test.
 //!
 //! Corners are brought to a space where the ray is the z axis; that is the only rounding which
-//! decides anything. The signs of the edge functions are exact: single precision where it is
-//! certain, double where it is not, in which products of single-precision numbers are exact. So a
+//! decides anything. The signs of the edge functions are exact: what single precision leaves open
+//! is decided in double, in which products of single-precision numbers are exact. So a
 //! ray never slips between two triangles, and what is met is a point of the triangle that lies on
 //! the ray to within a few units in the last place, even where the ray runs in the triangle's
 //! plane: a tree finds there what brute force finds. No fused multiply-add: the same operations in
@@ -55,10 +55,6 @@ pub(super) struct ShearedRay {
     axes: Axes,
 }
 
-/// An edge function above this share of its products has the right sign: its own rounding and that
-/// of both products are below a quarter of it.
-pub(super) const CERTAIN: f32 = 1.0 / 4_194_304.0;
-
 impl ShearedRay {
     /// Prepares a ray whose direction is not zero.
     pub(super) fn new(ray: &Ray) -> Self {
@@ -86,13 +82,12 @@ impl ShearedRay {
     }
 }
 
-/// Whether the area between the ray and an edge is certainly below 0, or certainly above.
+/// Whether the area between the ray and an edge is certainly below 0, or certainly above: rounding
+/// keeps the order of two products, so their difference has the right sign wherever it is not 0.
 #[inline(always)]
 fn certain_sign(p: [f32; 3], q: [f32; 3]) -> (bool, bool) {
-    let product = p[0] * q[1];
-    let value = product - p[1] * q[0];
-    let error = CERTAIN * product.abs();
-    (value < -error, value > error)
+    let value = p[0] * q[1] - p[1] * q[0];
+    (value < 0.0, value > 0.0)
 }
 
 /// The test of corners in sheared space, with exact signs; what decides every hit.

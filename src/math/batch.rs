@@ -67,7 +67,7 @@ impl RayBatch {
     }
 
     /// The ray at `index`.
-    #[inline]
+    #[inline(always)]
     pub fn ray(&self, index: usize) -> Ray {
         Ray {
             origin: Vec3::new(self.origin[0][index], self.origin[1][index], self.origin[2][index]),

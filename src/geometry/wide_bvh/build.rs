@@ -13,6 +13,9 @@ const N_BINS: usize = 16;
 /// Ranges of more triangles are built in parallel.
 const PARALLEL_LIMIT: usize = 4096;
 
+/// A deeper tree is cut in equal parts, which bounds its depth.
+const SAH_DEPTH: u32 = 12;
+
 /// A triangle on its way into the tree.
 #[derive(Clone, Copy)]
 struct Item {
@@ -65,10 +68,13 @@ fn subtree(mesh: &Mesh, range: Range<'_>, depth: u32, tree: &mut Subtree) -> u32
     let mut ranges = Vec::with_capacity(WIDTH);
     ranges.push(range);
     while ranges.len() < WIDTH {
-        let area = |range: &Range<'_>| range.bounds.half_area();
-        let widest = (0..ranges.len())
-            .filter(|i| ranges[*i].items.len() > BLOCK)
-            .max_by(|a, b| area(&ranges[*a]).total_cmp(&area(&ranges[*b])));
+        // Deep down, and of equal surfaces, the one of most triangles: so the parts get equal.
+        let area = |i: usize| if depth < SAH_DEPTH { ranges[i].bounds.half_area() } else { 0.0 };
+        let order = |a: &usize, b: &usize| {
+            let by_number = ranges[*a].items.len().cmp(&ranges[*b].items.len());
+            area(*a).total_cmp(&area(*b)).then(by_number)
+        };
+        let widest = (0..ranges.len()).filter(|i| ranges[*i].items.len() > BLOCK).max_by(order);
         let Some(widest) = widest else { break };
         let (lower, upper) = split(ranges.swap_remove(widest), depth);
         ranges.push(lower);
@@ -136,8 +142,6 @@ fn append(tree: &mut Subtree, mut part: Subtree, root: u32) -> u32 {
 
 /// Two ranges from one of more than a block.
 fn split<'a>(range: Range<'a>, depth: u32) -> (Range<'a>, Range<'a>) {
-    /// A deeper tree is cut in equal halves, which bounds its depth.
-    const SAH_DEPTH: u32 = 12;
     let cut = if depth < SAH_DEPTH { best_cut(&range) } else { None };
     let middle = match cut {
         Some(cut) => partition(range.items, &cut),

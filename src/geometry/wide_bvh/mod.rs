@@ -7,14 +7,21 @@
 #![expect(unsafe_code, reason = "functions compiled for processors that are asked for first")]
 
 mod build;
+mod descent;
+mod leaf;
 mod packet;
 mod single;
+mod stream;
+
+use std::cell::RefCell;
 
 use glam::Vec3;
 
+use crate::geometry::TraversalCost;
 use crate::geometry::lanes::Portable;
 use crate::geometry::mesh::Mesh;
-use crate::geometry::{Nearest, TraversalCost};
+use crate::geometry::nearest::{Nearest, Search};
+use crate::geometry::wide_bvh::stream::{Fleet, TakeAny, TakeNearest};
 use crate::math::{Aabb, Ray, RayBatch};
 
 /// Children of a node.
@@ -38,7 +45,7 @@ struct Node {
 
 /// Four triangles; the last is repeated where there are fewer.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
+#[repr(C, align(32))]
 struct Block {
     /// By corner, by axis.
     corners: [[[f32; BLOCK]; 3]; 3],
@@ -55,36 +62,21 @@ pub(super) struct WideBvh {
     magnitude: f32,
 }
 
-/// What a ray needs for box tests, in one place for all kinds of traversal.
-///
-/// Boxes are grown by `pad`, 16 units in the last place of the largest coordinate that matters,
-/// which covers the rounding of box and triangle tests alike.
-#[derive(Clone, Copy)]
-struct BoxRay {
-    reciprocal: [f32; 3],
-    pad: f32,
-}
-
-impl BoxRay {
-    /// Directions count as no less, so that reciprocals stay far from overflow even times the
-    /// largest coordinate.
-    const SMALLEST: f32 = 1e-20;
-
-    #[inline(always)]
-    fn new(origin: Vec3, direction: Vec3, magnitude: f32) -> Self {
-        let reciprocal = direction
-            .to_array()
-            .map(|d| 1.0 / if d.abs() < Self::SMALLEST { Self::SMALLEST.copysign(d) } else { d });
-        Self { reciprocal, pad: Self::pad(origin.abs().max_element(), magnitude) }
-    }
-
-    fn pad(origin: f32, magnitude: f32) -> f32 {
-        (origin + magnitude) * (16.0 / 16_777_216.0)
-    }
-}
-
 impl Node {
-    const EMPTY: Self = Self { bounds: [[0.0; WIDTH]; 6], children: [0; WIDTH], n_children: 0 };
+    /// Places without a child have bounds that nothing touches, and lead to a block even where
+    /// overflow makes a ray touch everything.
+    const EMPTY: Self = Self {
+        bounds: [
+            [f32::INFINITY; WIDTH],
+            [f32::INFINITY; WIDTH],
+            [f32::INFINITY; WIDTH],
+            [f32::NEG_INFINITY; WIDTH],
+            [f32::NEG_INFINITY; WIDTH],
+            [f32::NEG_INFINITY; WIDTH],
+        ],
+        children: [LEAF; WIDTH],
+        n_children: 0,
+    };
 
     fn set_bounds(&mut self, child: usize, bounds: &Aabb) {
         for axis in 0..3 {
@@ -121,6 +113,23 @@ impl Block {
 }
 
 impl WideBvh {
+    /// Directions count as no less in box tests, so that reciprocals stay far from overflow even
+    /// times the largest coordinate.
+    const SMALLEST: f32 = 1e-20;
+
+    /// A component of a direction that box tests can divide by.
+    #[inline(always)]
+    fn not_tiny(d: f32) -> f32 {
+        if d.abs() < Self::SMALLEST { Self::SMALLEST.copysign(d) } else { d }
+    }
+
+    /// Boxes are grown by this, 16 units in the last place of the largest coordinate that matters,
+    /// which covers the rounding of box and triangle tests alike.
+    #[inline(always)]
+    fn pad(origin: f32, magnitude: f32) -> f32 {
+        (origin + magnitude) * (16.0 / 16_777_216.0)
+    }
+
     /// Builds the tree of a mesh that has triangles, on the current pool.
     pub(super) fn build(mesh: &Mesh) -> Self {
         let (tree, root) = build::build(mesh);
@@ -137,9 +146,9 @@ impl WideBvh {
         size_of_val(&self.nodes[..]) + size_of_val(&self.blocks[..])
     }
 
-    /// Takes the nearest hit of one ray in object space into `nearest`.
-    pub(super) fn intersect(&self, ray: &Ray, object: u32, nearest: &mut Nearest) {
-        dispatch::intersect(self, ray, object, nearest);
+    /// Takes the hits of one ray in object space into a search.
+    pub(super) fn intersect(&self, ray: &Ray, object: u32, search: &mut Search) {
+        dispatch::intersect(self, ray, object, search);
     }
 
     /// [`WideBvh::intersect`] that adds up what it takes, the same on every machine.
@@ -147,10 +156,10 @@ impl WideBvh {
         &self,
         ray: &Ray,
         object: u32,
-        nearest: &mut Nearest,
+        search: &mut Search,
         cost: &mut TraversalCost,
     ) {
-        single::nearest_counted(self, ray, object, nearest, cost);
+        single::nearest_counted(self, ray, object, search, cost);
     }
 
     /// Whether anything but the ray's source lies between its ends.
@@ -160,20 +169,39 @@ impl WideBvh {
 
     /// [`WideBvh::intersect`] for many rays, one `nearest` each.
     pub(super) fn intersect_batch(&self, rays: &RayBatch, object: u32, nearest: &mut [Nearest]) {
-        dispatch::intersect_batch(self, rays, object, nearest);
+        let source = &rays.source[..];
+        FLEET.with_borrow_mut(|fleet| {
+            dispatch::intersect_batch(
+                self,
+                rays,
+                fleet,
+                &mut TakeNearest { nearest, source, object },
+            );
+        });
     }
 
     /// [`WideBvh::occluded`] for many rays; those already blocked are left out.
     pub(super) fn occluded_batch(&self, rays: &RayBatch, object: u32, blocked: &mut [bool]) {
-        dispatch::occluded_batch(self, rays, object, blocked);
+        let (t_max, source) = (&rays.t_max[..], &rays.source[..]);
+        FLEET.with_borrow_mut(|fleet| {
+            let mut hits = TakeAny { blocked, t_max, source, object };
+            dispatch::occluded_batch(self, rays, fleet, &mut hits);
+        });
     }
+}
+
+thread_local! {
+    /// Every thread's places for rays under way.
+    static FLEET: RefCell<Box<Fleet>> = RefCell::new(Box::new(Fleet::IDLE));
 }
 
 /// The same functions compiled for each kind of processor.
 mod dispatch {
     use std::sync::OnceLock;
 
-    use super::{Nearest, Portable, Ray, RayBatch, WideBvh, packet, single};
+    use super::{
+        Fleet, Portable, Ray, RayBatch, Search, TakeAny, TakeNearest, WideBvh, packet, single,
+    };
     #[cfg(target_arch = "x86_64")]
     use crate::geometry::lanes::{Avx2, Avx512};
 
@@ -191,7 +219,11 @@ mod dispatch {
         *LEVEL.get_or_init(|| {
             #[cfg(target_arch = "x86_64")]
             {
-                let has_avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
+                let has_avx2 = is_x86_feature_detected!("avx2")
+                    && is_x86_feature_detected!("fma")
+                    && is_x86_feature_detected!("bmi1")
+                    && is_x86_feature_detected!("bmi2")
+                    && is_x86_feature_detected!("popcnt");
                 let has_avx512 =
                     is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl");
                 if has_avx2 && has_avx512 {
@@ -209,12 +241,12 @@ mod dispatch {
         ($($name:ident => $module:ident::$generic:ident, ($($argument:ident: $type:ty),*) -> $result:ty;)+) => {$(
             pub(super) fn $name(bvh: &WideBvh, $($argument: $type),*) -> $result {
                 #[cfg(target_arch = "x86_64")]
-                #[target_feature(enable = "avx512f,avx512vl,avx2,fma")]
+                #[target_feature(enable = "avx512f,avx512vl,avx2,fma,bmi1,bmi2,popcnt")]
                 fn avx512(bvh: &WideBvh, $($argument: $type),*) -> $result {
                     $module::$generic::<Avx512>(bvh, $($argument),*)
                 }
                 #[cfg(target_arch = "x86_64")]
-                #[target_feature(enable = "avx2,fma")]
+                #[target_feature(enable = "avx2,fma,bmi1,bmi2,popcnt")]
                 fn avx2(bvh: &WideBvh, $($argument: $type),*) -> $result {
                     $module::$generic::<Avx2>(bvh, $($argument),*)
                 }
@@ -232,12 +264,12 @@ mod dispatch {
     }
 
     compiled! {
-        intersect => single::nearest, (ray: &Ray, object: u32, nearest: &mut Nearest) -> ();
+        intersect => single::nearest, (ray: &Ray, object: u32, search: &mut Search) -> ();
         occluded => single::blocked, (ray: &Ray, object: u32) -> bool;
-        intersect_batch => packet::intersect_batch,
-            (rays: &RayBatch, object: u32, nearest: &mut [Nearest]) -> ();
-        occluded_batch => packet::occluded_batch,
-            (rays: &RayBatch, object: u32, blocked: &mut [bool]) -> ();
+        intersect_batch => packet::nearest,
+            (rays: &RayBatch, fleet: &mut Fleet, hits: &mut TakeNearest<'_>) -> ();
+        occluded_batch => packet::blocked,
+            (rays: &RayBatch, fleet: &mut Fleet, hits: &mut TakeAny<'_>) -> ();
     }
 }
 
@@ -302,35 +334,38 @@ mod tests {
         use crate::geometry::triangle::ShearedRay;
         let (mesh, rays) = (soup(600), rays(4096 + 9));
         let bvh = WideBvh::build(&mesh);
-        let mut by_packet: Vec<Nearest> =
-            (0..rays.len()).map(|i| Nearest::new(&rays.ray(i))).collect();
+        let mut by_packet: Vec<Nearest> = rays.t_max.iter().map(|t| Nearest::new(*t)).collect();
         let mut portable = by_packet.clone();
         let mut blocked = vec![false; rays.len()];
         let mut blocked_portable = blocked.clone();
         bvh.intersect_batch(&rays, 2, &mut by_packet);
-        packet::intersect_batch::<Portable>(&bvh, &rays, 2, &mut portable);
+        let mut fleet = Fleet::IDLE;
+        let mut hits = TakeNearest { nearest: &mut portable, source: &rays.source, object: 2 };
+        packet::nearest::<Portable>(&bvh, &rays, &mut fleet, &mut hits);
         bvh.occluded_batch(&rays, 2, &mut blocked);
-        packet::occluded_batch::<Portable>(&bvh, &rays, 2, &mut blocked_portable);
+        let (t_max, source) = (&rays.t_max[..], &rays.source[..]);
+        let mut hits = TakeAny { blocked: &mut blocked_portable, t_max, source, object: 2 };
+        packet::blocked::<Portable>(&bvh, &rays, &mut fleet, &mut hits);
         let mut n_hits = 0;
         for i in 0..rays.len() {
             let ray = rays.ray(i);
             let sheared = ShearedRay::new(&ray);
-            let mut expected = Nearest::new(&ray);
+            let mut expected = Search::new(&ray);
             for id in 0..mesh.triangles.len() as u32 {
                 if let Some(t) = sheared.intersect(mesh.corners(id)) {
-                    expected.offer(t, 2, id);
+                    expected.offer(t, PrimitiveId { object: 2, primitive: id });
                 }
             }
-            n_hits += usize::from(expected.is_hit());
-            let mut one = Nearest::new(&ray);
+            n_hits += usize::from(expected.nearest.is_hit());
+            let mut one = Search::new(&ray);
             bvh.intersect(&ray, 2, &mut one);
-            let mut one_portable = Nearest::new(&ray);
+            let mut one_portable = Search::new(&ray);
             single::nearest::<Portable>(&bvh, &ray, 2, &mut one_portable);
-            let expected = expected.hit();
+            let expected = expected.nearest.hit();
             assert_eq!(by_packet[i].hit(), expected, "packet, ray {i}");
             assert_eq!(portable[i].hit(), expected, "portable packet, ray {i}");
-            assert_eq!(one.hit(), expected, "single, ray {i}");
-            assert_eq!(one_portable.hit(), expected, "portable single, ray {i}");
+            assert_eq!(one.nearest.hit(), expected, "single, ray {i}");
+            assert_eq!(one_portable.nearest.hit(), expected, "portable single, ray {i}");
             assert_eq!(blocked[i], expected.is_some(), "blocked, ray {i}");
             assert_eq!(blocked_portable[i], expected.is_some(), "blocked portable, ray {i}");
             assert_eq!(bvh.occluded(&ray, 2), expected.is_some(), "occluded, ray {i}");
@@ -344,8 +379,8 @@ mod tests {
         let mesh = Mesh { positions, triangles: vec![[0, 1, 2]; 20_000], ..Mesh::default() };
         let bvh = WideBvh::build(&mesh);
         let ray = Ray::new(Vec3::ZERO, Vec3::ONE);
-        let mut nearest = Nearest::new(&ray);
-        bvh.intersect(&ray, 0, &mut nearest);
-        assert_eq!(nearest.hit().map(|hit| hit.id.primitive), Some(0), "the lowest wins");
+        let mut search = Search::new(&ray);
+        bvh.intersect(&ray, 0, &mut search);
+        assert_eq!(search.nearest.hit().map(|hit| hit.id.primitive), Some(0), "the lowest wins");
     }
 }

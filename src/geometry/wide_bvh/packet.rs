@@ -1,206 +1,131 @@
 //! Packets of rays through the tree.
 //!
-//! Sixteen rays that go about the same way share a traversal: an interval of their origins and
-//! reciprocal directions is tested against eight boxes at once, the boxes that remain against the
-//! sixteen rays themselves, and each triangle against sixteen rays. Rays that do not go together are
-//! traced one by one.
+//! Up to four groups of sixteen rays that go about the same way share a traversal: an interval of
+//! their origins and reciprocal directions is tested against eight boxes at once, the boxes that
+//! remain against the rays themselves, a group at a time, and only groups of which a ray touches a
+//! box go on with it. Each triangle is tested against sixteen rays. What does not go together is
+//! left to [`stream`].
 //!
 //! Source: S. Boulos, I. Wald and C. Benthin, "Adaptive Ray Packet Reordering", IEEE RT 2008, for
 //! interval tests of packets.
 
-use crate::geometry::Nearest;
 use crate::geometry::lanes::{Isa, Lanes};
-use crate::geometry::triangle::Axes;
-use crate::geometry::wide_bvh::single::{self, Candidates, Stack, sheared};
-use crate::geometry::wide_bvh::{BLOCK, Block, BoxRay, LEAF, Node, WIDTH, WideBvh};
+use crate::geometry::wide_bvh::stream::{self, Fleet, Take, TakeAny, TakeNearest};
+use crate::geometry::wide_bvh::{BLOCK, Block, LEAF, Node, WIDTH, WideBvh, leaf};
 use crate::math::RayBatch;
 
-/// Rays of a packet.
+/// Rays of a group.
 const LANES: usize = 16;
+/// Groups of a packet.
+const GROUPS: usize = 4;
+/// Seven children a level may wait; the builder keeps the tree below 22 levels.
+const STACK: usize = 160;
 
 /// The nearest hit of every ray of a batch.
 #[inline(always)]
-pub(super) fn intersect_batch<I: Isa>(
+pub(super) fn nearest<I: Isa>(
     bvh: &WideBvh,
     rays: &RayBatch,
-    object: u32,
-    nearest: &mut [Nearest],
+    fleet: &mut Fleet,
+    hits: &mut TakeNearest<'_>,
 ) {
-    for first in (0..rays.len()).step_by(LANES) {
-        let n = LANES.min(rays.len() - first);
-        let nearest = &mut nearest[first..first + n];
-        let mut ends = [-1.0; LANES];
-        for (end, nearest) in ends.iter_mut().zip(nearest.iter()) {
-            *end = nearest.t();
-        }
-        match Packet::<I>::new(bvh, rays, first, n, &ends) {
-            Some(mut packet) => {
-                let sources = sources(rays, first, n, object);
-                packet.walk(bvh, &mut TakeNearest { sources, object, nearest });
-            }
-            None => {
-                for (lane, nearest) in nearest.iter_mut().enumerate() {
-                    single::nearest::<I>(bvh, &rays.ray(first + lane), object, nearest);
-                }
-            }
-        }
-    }
+    trace::<I, _>(bvh, rays, fleet, hits);
 }
 
 /// Which rays of a batch are blocked; those that are already are left out.
 #[inline(always)]
-pub(super) fn occluded_batch<I: Isa>(
+pub(super) fn blocked<I: Isa>(
     bvh: &WideBvh,
     rays: &RayBatch,
-    object: u32,
-    blocked: &mut [bool],
+    fleet: &mut Fleet,
+    hits: &mut TakeAny<'_>,
 ) {
-    for first in (0..rays.len()).step_by(LANES) {
-        let n = LANES.min(rays.len() - first);
-        let blocked = &mut blocked[first..first + n];
-        let mut ends = [-1.0; LANES];
-        for lane in 0..n {
-            if !blocked[lane] {
-                ends[lane] = rays.t_max[first + lane];
-            }
-        }
-        match Packet::<I>::new(bvh, rays, first, n, &ends) {
-            Some(mut packet) => {
-                let sources = sources(rays, first, n, object);
-                let mut any = FindAny { sources, hits: 0 };
-                packet.walk(bvh, &mut any);
-                for (lane, blocked) in blocked.iter_mut().enumerate() {
-                    *blocked |= any.hits >> lane & 1 == 1;
-                }
-            }
-            None => {
-                for (lane, blocked) in blocked.iter_mut().enumerate() {
-                    if !*blocked {
-                        *blocked = single::blocked::<I>(bvh, &rays.ray(first + lane), object);
-                    }
-                }
-            }
-        }
-    }
+    trace::<I, _>(bvh, rays, fleet, hits);
 }
 
-/// The triangle that each ray leaves, where it is one of this object.
+/// Traces all rays of a batch, together where they go together.
 #[inline(always)]
-fn sources(rays: &RayBatch, first: usize, n: usize, object: u32) -> [u32; LANES] {
-    let mut sources = [u32::MAX; LANES];
-    for (lane, source) in rays.source[first..first + n].iter().enumerate() {
-        if source.object == object {
-            sources[lane] = source.primitive;
+fn trace<I: Isa, T: Take>(bvh: &WideBvh, rays: &RayBatch, fleet: &mut Fleet, hits: &mut T) {
+    let (spread_of_packet, spread_of_group) = spreads(bvh.blocks.len());
+    let mut packet = Packet::<I>::idle();
+    // Rays before this one are done, from here to the packet at hand they wait for the stream.
+    let mut waiting = 0;
+    let mut first = 0;
+    while first < rays.len() {
+        let mut n = (LANES * GROUPS).min(rays.len() - first);
+        let mut is_together = go_together::<I>(rays, first, n, spread_of_packet);
+        if !is_together {
+            n = LANES.min(n);
+            is_together = go_together::<I>(rays, first, n, spread_of_group);
         }
+        if is_together && n >= LANES / 2 {
+            stream::trace::<I, T>(bvh, rays, waiting, first - waiting, fleet, hits);
+            packet.start(bvh, rays, first, n, hits);
+            packet.walk(bvh, hits);
+            waiting = first + n;
+        }
+        first += n;
     }
-    sources
+    stream::trace::<I, T>(bvh, rays, waiting, rays.len() - waiting, fleet, hits);
 }
 
-/// What is done with the blocks that some ray of a packet may touch; see [`single`] for why it is
-/// a trait.
-trait Visit<I: Isa> {
-    /// Tells whether limits changed.
-    fn visit(&mut self, packet: &mut Packet<I>, block: &Block) -> bool;
+/// How far apart the directions of a packet and of a group may be: the finer the mesh, the sooner
+/// rays part.
+fn spreads(n_blocks: usize) -> (f32, f32) {
+    let group = (25.0 / (n_blocks as f32).sqrt()).clamp(0.1, 1.0);
+    (0.5 * group, group)
 }
 
-struct TakeNearest<'a> {
-    sources: [u32; LANES],
-    object: u32,
-    nearest: &'a mut [Nearest],
-}
-
-struct FindAny {
-    sources: [u32; LANES],
-    hits: u32,
-}
-
-impl<I: Isa> Visit<I> for TakeNearest<'_> {
-    #[inline(always)]
-    fn visit(&mut self, packet: &mut Packet<I>, block: &Block) -> bool {
-        let mut any = 0;
-        for corner in 0..BLOCK {
-            let id = block.ids[corner];
-            if corner > 0 && id == block.ids[corner - 1] {
-                break;
-            }
-            let candidates = packet.triangle(block, corner);
-            if candidates.mask == 0 {
-                continue;
-            }
-            let mut limits = [0.0; LANES];
-            packet.limit.store(&mut limits);
-            let mut left = candidates.mask;
-            let corners = candidates.stored();
-            while left != 0 {
-                let lane = left.trailing_zeros() as usize;
-                left &= left - 1;
-                if self.sources[lane] == id {
-                    continue;
-                }
-                if let Some(t) = corners.decide(lane, packet.speeds[lane]) {
-                    self.nearest[lane].offer(t, self.object, id);
-                    limits[lane] = self.nearest[lane].t();
-                }
-            }
-            packet.limit = I::F16::load(&limits);
-            any |= candidates.mask;
+/// Whether directions are no farther apart than `spread` along each axis, in units of the largest
+/// component of all.
+#[inline(always)]
+fn go_together<I: Isa>(rays: &RayBatch, first: usize, n: usize, spread: f32) -> bool {
+    let mut largest = 0.0_f32;
+    let mut widest = 0.0_f32;
+    for axis in 0..3 {
+        let start = lanes::<I::F16>(&rays.direction[axis], first, n);
+        let (mut low, mut high) = (start, start);
+        for offset in (LANES..n).step_by(LANES) {
+            let these = lanes::<I::F16>(&rays.direction[axis], first + offset, n - offset);
+            low = low.min(these);
+            high = high.max(these);
         }
-        any != 0
+        let (low, high) = (low.least(), high.greatest());
+        largest = largest.max(high).max(-low);
+        widest = widest.max(high - low);
     }
+    widest <= spread * largest
 }
 
-impl<I: Isa> Visit<I> for FindAny {
-    #[inline(always)]
-    fn visit(&mut self, packet: &mut Packet<I>, block: &Block) -> bool {
-        let mut found = 0;
-        for corner in 0..BLOCK {
-            let id = block.ids[corner];
-            if corner > 0 && id == block.ids[corner - 1] {
-                break;
-            }
-            let candidates = packet.triangle(block, corner);
-            let mut left = candidates.mask & !found;
-            if left == 0 {
-                continue;
-            }
-            let corners = candidates.stored();
-            while left != 0 {
-                let lane = left.trailing_zeros() as usize;
-                left &= left - 1;
-                if self.sources[lane] == id {
-                    continue;
-                }
-                let t = corners.decide(lane, packet.speeds[lane]);
-                found |= u32::from(t.is_some_and(|t| 0.0 < t && t < packet.ends[lane])) << lane;
-            }
-        }
-        if found == 0 {
-            return false;
-        }
-        self.hits |= found;
-        packet.limit = packet.limit.blend(I::F16::splat(-1.0), found);
-        true
-    }
-}
-
-/// Sixteen rays that go together. Lanes without a ray, or whose ray is done, end below 0.
-struct Packet<I: Isa> {
+/// Sixteen rays. Lanes without a ray, or whose ray is done, end below 0.
+struct Group<I: Isa> {
     origin: [I::F16; 3],
     reciprocal: [I::F16; 3],
-    /// Origin times reciprocal.
-    scaled_origin: [I::F16; 3],
-    /// Axis order of the triangle test, the same for all.
-    order: [usize; 3],
+    /// Origins, moved outwards by the bound of rounding errors, times the reciprocals.
+    near_origin: [I::F16; 3],
+    far_origin: [I::F16; 3],
+    /// Where directions are below 0.
+    negative: [u32; 3],
+    /// Where x is a direction's largest component, and where y is; elsewhere z.
+    largest: [u32; 2],
     shear: [I::F16; 2],
-    /// The directions' largest components, and 1 over them.
-    speeds: [f32; LANES],
+    speed: I::F16,
     pace: I::F16,
-    /// Where the rays end, and where what is of interest does.
-    ends: [f32; LANES],
     limit: I::F16,
-    pad: f32,
-    /// Interval test along each axis.
-    intervals: [Interval; 3],
+    /// The greatest limit.
+    farthest: f32,
+}
+
+/// Groups that go together.
+struct Packet<I: Isa> {
+    groups: [Group<I>; GROUPS],
+    n_groups: usize,
+    /// The place of the first ray in its batch.
+    first: usize,
+    farthest: f32,
+    /// Interval test along each axis; none where directions differ in their sign.
+    intervals: [Option<Interval>; 3],
+    stack: Stack,
 }
 
 /// Bounds of a packet's reciprocal directions and origins along one axis, all directions having the
@@ -218,194 +143,372 @@ struct Interval {
 }
 
 impl<I: Isa> Packet<I> {
-    /// `None` where the directions differ in a sign or in their largest axis.
+    /// No rays.
     #[inline(always)]
-    fn new(
-        bvh: &WideBvh,
-        rays: &RayBatch,
-        first: usize,
-        n: usize,
-        ends: &[f32; LANES],
-    ) -> Option<Self> {
-        if n < LANES / 2 {
-            return None;
+    fn idle() -> Self {
+        Self {
+            groups: [Group::idle(), Group::idle(), Group::idle(), Group::idle()],
+            n_groups: 0,
+            first: 0,
+            farthest: -1.0,
+            intervals: [None; 3],
+            stack: Stack { entries: [Entry::NONE; STACK], n: 0 },
         }
-        let order = Axes::new(rays.ray(first).direction).order;
+    }
+
+    /// Takes on the rays `first..first + n` of a batch.
+    #[inline(always)]
+    fn start<T: Take>(&mut self, bvh: &WideBvh, rays: &RayBatch, first: usize, n: usize, hits: &T) {
         let zero = I::F16::splat(0.0);
-        let (mut origin, mut direction, mut size) = ([zero; 3], [zero; 3], [zero; 3]);
+        self.n_groups = n.div_ceil(LANES);
+        self.first = first;
+        self.farthest = -1.0;
         let mut farthest_origin = zero;
         for axis in 0..3 {
-            origin[axis] = lanes(&rays.origin[axis], first, n);
-            direction[axis] = lanes(&rays.direction[axis], first, n);
-            size[axis] = direction[axis].max(zero.sub(direction[axis]));
-            let n_negative = direction[axis].lt(zero);
-            if n_negative != 0 && n_negative != I::F16::ALL {
+            for offset in (0..n).step_by(LANES) {
+                let origin = lanes::<I::F16>(&rays.origin[axis], first + offset, n - offset);
+                farthest_origin = origin.max(farthest_origin);
+                farthest_origin = zero.sub(origin).max(farthest_origin);
+            }
+        }
+        let pad = WideBvh::pad(farthest_origin.greatest(), bvh.magnitude);
+        for axis in 0..3 {
+            for index in 0..self.n_groups {
+                let offset = index * LANES;
+                let origin = lanes::<I::F16>(&rays.origin[axis], first + offset, n - offset);
+                let direction = lanes::<I::F16>(&rays.direction[axis], first + offset, n - offset);
+                self.groups[index].set_axis(axis, origin, direction, pad);
+            }
+            self.intervals[axis] = self.interval(axis, pad);
+        }
+        for index in 0..self.n_groups {
+            let offset = index * LANES;
+            let mut limits = [-1.0; LANES];
+            for (lane, limit) in limits.iter_mut().enumerate().take(n - offset) {
+                *limit = hits.limit(first + offset + lane);
+            }
+            let group = &mut self.groups[index];
+            group.limit = I::F16::load(&limits);
+            group.farthest = group.limit.greatest();
+            self.farthest = self.farthest.max(group.farthest);
+            group.set_axes(rays, first + offset, n - offset);
+        }
+    }
+
+    /// What the box tests along an axis have in common, if the directions have their sign.
+    #[inline(always)]
+    fn interval(&self, axis: usize, pad: f32) -> Option<Interval> {
+        let [first, others @ ..] = &self.groups[..self.n_groups] else { return None };
+        let is_negative = first.negative[axis] != 0;
+        let (mut least, mut greatest) = (first.reciprocal[axis], first.reciprocal[axis]);
+        let (mut low, mut high) = (first.origin[axis], first.origin[axis]);
+        let mut are_negative = first.negative[axis];
+        for group in others {
+            if (group.negative[axis] != 0) != is_negative {
                 return None;
             }
-            farthest_origin = farthest_origin.max(origin[axis]).max(zero.sub(origin[axis]));
+            are_negative &= group.negative[axis];
+            least = least.min(group.reciprocal[axis]);
+            greatest = greatest.max(group.reciprocal[axis]);
+            low = low.min(group.origin[axis]);
+            high = high.max(group.origin[axis]);
         }
-        let largest = size[order[2]];
-        if largest.lt(size[order[0]]) | largest.lt(size[order[1]]) != 0 {
+        if is_negative && are_negative != I::F16::ALL {
             return None;
         }
-        if largest.eq(size[order[0]]) | largest.eq(size[order[1]]) != 0 {
-            // Ties of the largest axis are broken as for a single ray.
-            for index in first..first + n {
-                if Axes::new(rays.ray(index).direction).order != order {
-                    return None;
-                }
-            }
-        }
-        let pad = BoxRay::pad(farthest_origin.greatest(), bvh.magnitude);
-        let one = I::F16::splat(1.0);
-        let (mut reciprocal, mut scaled_origin) = ([zero; 3], [zero; 3]);
-        let mut intervals = [Interval::NONE; 3];
-        for axis in 0..3 {
-            let smallest = BoxRay::SMALLEST.copysign(rays.direction[axis][first]);
-            let is_tiny = size[axis].lt(I::F16::splat(BoxRay::SMALLEST));
-            let d = direction[axis].blend(I::F16::splat(smallest), is_tiny);
-            reciprocal[axis] = one.div(d);
-            scaled_origin[axis] = origin[axis].mul(reciprocal[axis]);
-            intervals[axis] = Interval::new(axis, reciprocal[axis], origin[axis], pad);
-        }
-        let speed = direction[order[2]];
-        let mut speeds = [0.0; LANES];
-        speed.store(&mut speeds);
-        Some(Self {
-            origin,
-            reciprocal,
-            scaled_origin,
-            order,
-            shear: [direction[order[0]].div(speed), direction[order[1]].div(speed)],
-            speeds,
-            pace: one.div(speed),
-            ends: *ends,
-            limit: I::F16::load(ends),
-            pad,
-            intervals,
+        let reciprocals = [least.least(), greatest.greatest()];
+        let (low, high) = (low.least() - pad, high.greatest() + pad);
+        let (near, far) = if is_negative { (axis + 3, axis) } else { (axis, axis + 3) };
+        // The near plane is met first from the origin farthest along the direction.
+        let (foremost, hindmost) = if is_negative { (low, high) } else { (high, low) };
+        Some(Interval {
+            near,
+            far,
+            reciprocals,
+            near_origin: [reciprocals[0] * foremost, reciprocals[1] * foremost],
+            far_origin: [reciprocals[0] * hindmost, reciprocals[1] * hindmost],
         })
     }
 
-    /// Sixteen rays against one triangle of a block.
+    /// Takes the hits of all rays.
     #[inline(always)]
-    fn triangle(&self, block: &Block, lane: usize) -> Candidates<I::F16> {
-        let zero = I::F16::splat(0.0);
-        let (mut origin, mut corners) = ([zero; 3], [[zero; 3]; 3]);
-        for axis in 0..3 {
-            let k = self.order[axis];
-            origin[axis] = self.origin[k];
-            for (to, from) in corners.iter_mut().zip(&block.corners) {
-                to[axis] = I::F16::splat(from[k][lane]);
-            }
-        }
-        let [a, b, c] = corners;
-        let shear = self.shear;
-        let corners =
-            [sheared(a, origin, shear), sheared(b, origin, shear), sheared(c, origin, shear)];
-        Candidates::new(corners, self.pace, self.limit)
-    }
-
-    /// Hands the blocks that some ray may touch to a visitor, about near to far.
-    #[inline(always)]
-    fn walk<V: Visit<I>>(&mut self, bvh: &WideBvh, visitor: &mut V) {
-        let mut farthest = self.limit.greatest();
-        let mut stack = Stack::new();
-        let mut current = bvh.root;
+    fn walk<T: Take>(&mut self, bvh: &WideBvh, hits: &mut T) {
+        let mut current =
+            Entry { reference: bvh.root, enter: 0.0, groups: (1 << self.n_groups) - 1 };
+        self.stack.n = 0;
         loop {
-            while current & LEAF == 0 {
-                let node: &Node = &bvh.nodes[current as usize];
-                let (hits, ts) = self.test_node(node, farthest);
-                if hits == 0 {
-                    break;
+            while current.reference & LEAF == 0 {
+                let node = &bvh.nodes[current.reference as usize];
+                match self.enter(node, current.groups) {
+                    Some(nearest) => current = nearest,
+                    None => break,
                 }
-                current = stack.descend(node, hits, &ts);
             }
-            if current & LEAF != 0 && visitor.visit(self, &bvh.blocks[(current & !LEAF) as usize]) {
-                farthest = self.limit.greatest();
-                if farthest < 0.0 {
+            if current.reference & LEAF != 0 {
+                let block = &bvh.blocks[(current.reference & !LEAF) as usize];
+                if self.visit(block, current.groups, hits) && self.farthest < 0.0 {
                     return;
                 }
             }
-            match stack.pop(farthest) {
-                Some(reference) => current = reference,
-                None => return,
+            loop {
+                let Some(entry) = self.stack.pop() else { return };
+                if entry.enter <= self.farthest {
+                    current = entry;
+                    break;
+                }
             }
         }
     }
 
-    /// Children that some ray may touch, and about where: first by intervals, then by the rays.
+    /// The nearest of the children that some ray touches; the others go onto the stack.
     #[inline(always)]
-    fn test_node(&self, node: &Node, farthest: f32) -> (u32, [f32; WIDTH]) {
-        let (mut enter, mut leave) = (I::F8::splat(0.0), I::F8::splat(farthest));
+    fn enter(&mut self, node: &Node, groups: u32) -> Option<Entry> {
+        let (mut enter, mut leave) = (I::F8::splat(0.0), I::F8::splat(self.farthest));
         for interval in &self.intervals {
-            let near = I::F8::load(&node.bounds[interval.near]);
-            let far = I::F8::load(&node.bounds[interval.far]);
+            let Some(interval) = interval else { continue };
+            let near = I::row(&node.bounds, interval.near);
+            let far = I::row(&node.bounds, interval.far);
             let least = I::F8::splat(interval.reciprocals[0]);
             let greatest = I::F8::splat(interval.reciprocals[1]);
             let near_least = near.mul_sub(least, I::F8::splat(interval.near_origin[0]));
             let near_greatest = near.mul_sub(greatest, I::F8::splat(interval.near_origin[1]));
-            enter = enter.max(near_least.min(near_greatest));
+            enter = near_least.min(near_greatest).max(enter);
             let far_least = far.mul_sub(least, I::F8::splat(interval.far_origin[0]));
             let far_greatest = far.mul_sub(greatest, I::F8::splat(interval.far_origin[1]));
-            leave = leave.min(far_least.max(far_greatest));
+            leave = far_least.max(far_greatest).min(leave);
         }
         let mut left = enter.le(leave) & ((1 << node.n_children) - 1);
-        let mut ts = [0.0; WIDTH];
-        enter.store(&mut ts);
-        let mut hits = 0;
+        let mut enters = [0.0; WIDTH];
+        enter.store(&mut enters);
+        let base = self.stack.n;
         while left != 0 {
             let child = left.trailing_zeros() as usize;
             left &= left - 1;
-            let (mut enter, mut leave) = (I::F16::splat(0.0), self.limit);
-            for axis in 0..3 {
-                let interval = &self.intervals[axis];
-                let outwards = if interval.near < 3 { self.pad } else { -self.pad };
-                let near = I::F16::splat(node.bounds[interval.near][child] - outwards);
-                let far = I::F16::splat(node.bounds[interval.far][child] + outwards);
-                let (scale, origin) = (self.reciprocal[axis], self.scaled_origin[axis]);
-                enter = enter.max(near.mul_sub(scale, origin));
-                leave = leave.min(far.mul_sub(scale, origin));
+            let mut touching = 0;
+            let mut asked = groups;
+            while asked != 0 {
+                let group = asked.trailing_zeros() as usize;
+                asked &= asked - 1;
+                let is_touched = self.groups[group % GROUPS].touches(node, child);
+                touching |= u32::from(is_touched) << group;
             }
-            hits |= u32::from(enter.le(leave) != 0) << child;
+            if touching != 0 {
+                let reference = node.children[child];
+                self.stack
+                    .insert(base, Entry { reference, enter: enters[child], groups: touching });
+            }
         }
-        (hits, ts)
+        if self.stack.n == base { None } else { self.stack.pop() }
+    }
+
+    /// Tests the triangles of a block; tells whether a limit changed.
+    #[inline(always)]
+    fn visit<T: Take>(&mut self, block: &Block, groups: u32, hits: &mut T) -> bool {
+        let mut left = groups;
+        let mut is_changed = false;
+        while left != 0 {
+            let index = left.trailing_zeros() as usize % GROUPS;
+            left &= left - 1;
+            let group = &mut self.groups[index];
+            if group.visit(block, self.first + index * LANES, hits) {
+                group.farthest = group.limit.greatest();
+                is_changed = true;
+            }
+        }
+        if is_changed {
+            self.farthest = -1.0;
+            for group in &self.groups[..self.n_groups] {
+                self.farthest = self.farthest.max(group.farthest);
+            }
+        }
+        is_changed
+    }
+}
+
+impl<I: Isa> Group<I> {
+    /// No rays.
+    #[inline(always)]
+    fn idle() -> Self {
+        let zero = I::F16::splat(0.0);
+        Self {
+            origin: [zero; 3],
+            reciprocal: [zero; 3],
+            near_origin: [zero; 3],
+            far_origin: [zero; 3],
+            negative: [0; 3],
+            largest: [0; 2],
+            shear: [zero; 2],
+            speed: zero,
+            pace: zero,
+            limit: zero,
+            farthest: -1.0,
+        }
+    }
+
+    /// What box tests need along one axis.
+    #[inline(always)]
+    fn set_axis(&mut self, axis: usize, origin: I::F16, direction: I::F16, pad: f32) {
+        let zero = I::F16::splat(0.0);
+        let negative = direction.lt(zero);
+        let smallest = I::F16::splat(WideBvh::SMALLEST);
+        let smallest = smallest.blend(zero.sub(smallest), negative);
+        let size = direction.max(zero.sub(direction));
+        let is_tiny = size.lt(I::F16::splat(WideBvh::SMALLEST));
+        let reciprocal = I::F16::splat(1.0).div(direction.blend(smallest, is_tiny));
+        let outwards = I::F16::splat(pad).blend(I::F16::splat(-pad), negative);
+        self.origin[axis] = origin;
+        self.reciprocal[axis] = reciprocal;
+        self.near_origin[axis] = origin.add(outwards).mul(reciprocal);
+        self.far_origin[axis] = origin.sub(outwards).mul(reciprocal);
+        self.negative[axis] = negative;
+    }
+
+    /// What triangle tests need.
+    #[inline(always)]
+    fn set_axes(&mut self, rays: &RayBatch, first: usize, n: usize) {
+        let x = lanes::<I::F16>(&rays.direction[0], first, n);
+        let y = lanes::<I::F16>(&rays.direction[1], first, n);
+        let z = lanes::<I::F16>(&rays.direction[2], first, n);
+        let zero = I::F16::splat(0.0);
+        let (size_x, size_y) = (x.max(zero.sub(x)), y.max(zero.sub(y)));
+        let size_z = z.max(zero.sub(z));
+        // As for a single ray: x where it is above both, y where it is not below x and above z.
+        let is_x = size_y.lt(size_x) & size_z.lt(size_x);
+        let is_y = size_x.le(size_y) & size_z.lt(size_y);
+        self.largest = [is_x, is_y];
+        let [along_x, along_y, speed] = self.turned([x, y, z]);
+        self.shear = [along_x.div(speed), along_y.div(speed)];
+        self.speed = speed;
+        self.pace = I::F16::splat(1.0).div(speed);
+    }
+
+    /// Coordinates in the order of axes that each ray has for triangle tests.
+    #[inline(always)]
+    fn turned(&self, [x, y, z]: [I::F16; 3]) -> [I::F16; 3] {
+        let [is_x, is_y] = self.largest;
+        if is_x | is_y == 0 {
+            [x, y, z]
+        } else if is_y == I::F16::ALL {
+            [z, x, y]
+        } else if is_x == I::F16::ALL {
+            [y, z, x]
+        } else {
+            [
+                x.blend(z, is_y).blend(y, is_x),
+                y.blend(x, is_y).blend(z, is_x),
+                z.blend(y, is_y).blend(x, is_x),
+            ]
+        }
+    }
+
+    /// Whether some ray touches a box before its limit.
+    #[inline(always)]
+    fn touches(&self, node: &Node, child: usize) -> bool {
+        let (mut enter, mut leave) = (I::F16::splat(0.0), self.limit);
+        for axis in 0..3 {
+            let lower = I::F16::splat(node.bounds[axis][child]);
+            let upper = I::F16::splat(node.bounds[axis + 3][child]);
+            let (near, far) = match self.negative[axis] {
+                0 => (lower, upper),
+                negative if negative == I::F16::ALL => (upper, lower),
+                negative => (lower.blend(upper, negative), upper.blend(lower, negative)),
+            };
+            enter = near.mul_sub(self.reciprocal[axis], self.near_origin[axis]).max(enter);
+            leave = far.mul_sub(self.reciprocal[axis], self.far_origin[axis]).min(leave);
+        }
+        enter.le(leave) != 0
+    }
+
+    /// Offers what the rays meet in a block; tells whether a limit changed.
+    #[inline(always)]
+    fn visit<T: Take>(&mut self, block: &Block, first: usize, hits: &mut T) -> bool {
+        let mut is_changed = false;
+        for corner in 0..BLOCK {
+            let id = block.ids[corner];
+            if corner > 0 && id == block.ids[corner - 1] {
+                break;
+            }
+            let Some((mut mask, t)) = self.hits::<T>(block, corner) else { continue };
+            let (mut parameters, mut limits) = ([0.0; LANES], [0.0; LANES]);
+            t.store(&mut parameters);
+            self.limit.store(&mut limits);
+            while mask != 0 {
+                let lane = mask.trailing_zeros() as usize;
+                mask &= mask - 1;
+                limits[lane] = hits.take(first + lane, parameters[lane], id);
+            }
+            self.limit = I::F16::load(&limits);
+            is_changed = true;
+        }
+        is_changed
+    }
+
+    /// Where the rays meet one triangle of a block before their limits.
+    #[inline(always)]
+    fn hits<T: Take>(&self, block: &Block, lane: usize) -> Option<(u32, I::F16)> {
+        let [a, b, c] = &block.corners;
+        let corners = [
+            leaf::sheared(self.relative(a, lane), self.shear),
+            leaf::sheared(self.relative(b, lane), self.shear),
+            leaf::sheared(self.relative(c, lane), self.shear),
+        ];
+        leaf::hits::<_, T>(corners, self.speed, self.pace, self.limit)
+    }
+
+    #[inline(always)]
+    fn relative(&self, corner: &[[f32; BLOCK]; 3], lane: usize) -> [I::F16; 3] {
+        self.turned([
+            I::F16::splat(corner[0][lane]).sub(self.origin[0]),
+            I::F16::splat(corner[1][lane]).sub(self.origin[1]),
+            I::F16::splat(corner[2][lane]).sub(self.origin[2]),
+        ])
+    }
+}
+
+/// A place that waits, with the parameter at which it is entered and the groups that go there.
+#[derive(Clone, Copy)]
+struct Entry {
+    reference: u32,
+    enter: f32,
+    groups: u32,
+}
+
+impl Entry {
+    const NONE: Self = Self { reference: 0, enter: 0.0, groups: 0 };
+}
+
+struct Stack {
+    entries: [Entry; STACK],
+    n: usize,
+}
+
+impl Stack {
+    /// Keeps what lies above `base` in order, the nearest on top.
+    #[inline(always)]
+    fn insert(&mut self, base: usize, entry: Entry) {
+        let mut place = self.n;
+        while place > base && self.entries[place - 1].enter < entry.enter {
+            self.entries[place] = self.entries[place - 1];
+            place -= 1;
+        }
+        self.entries[place] = entry;
+        self.n += 1;
+    }
+
+    #[inline(always)]
+    fn pop(&mut self) -> Option<Entry> {
+        self.n = self.n.checked_sub(1)?;
+        Some(self.entries[self.n])
     }
 }
 
 /// Lanes `first..first + n`; those beyond repeat the first.
 #[inline(always)]
 fn lanes<F: Lanes>(from: &[f32], first: usize, n: usize) -> F {
-    if n == LANES {
+    if n >= LANES {
         return F::load(&from[first..]);
     }
     let mut padded = [from[first]; LANES];
     padded[..n].copy_from_slice(&from[first..first + n]);
     F::load(&padded)
-}
-
-impl Interval {
-    const NONE: Self = Self {
-        near: 0,
-        far: 0,
-        reciprocals: [0.0; 2],
-        near_origin: [0.0; 2],
-        far_origin: [0.0; 2],
-    };
-
-    #[inline(always)]
-    fn new<F: Lanes>(axis: usize, reciprocal: F, origin: F, pad: f32) -> Self {
-        let reciprocals = [reciprocal.least(), reciprocal.greatest()];
-        let (low, high) = (origin.least() - pad, origin.greatest() + pad);
-        let is_positive = reciprocals[0] > 0.0;
-        let (near, far) = if is_positive { (axis, axis + 3) } else { (axis + 3, axis) };
-        // The near plane is met first from the origin farthest along the direction.
-        let (foremost, hindmost) = if is_positive { (high, low) } else { (low, high) };
-        Self {
-            near,
-            far,
-            reciprocals,
-            near_origin: [reciprocals[0] * foremost, reciprocals[1] * foremost],
-            far_origin: [reciprocals[0] * hindmost, reciprocals[1] * hindmost],
-        }
-    }
 }
