@@ -7,6 +7,7 @@
 //! the goal is reached, or while paused, everything sleeps. No lock is held while rendering or
 //! while waking the caller.
 
+pub mod admit;
 pub mod develop;
 mod driver;
 mod maps;
@@ -50,8 +51,8 @@ impl Goal {
         n_samples >= self.samples || is_clean || is_late
     }
 
-    /// Estimate of the seconds to the nearest of the goals at the speed so far; noise falls with
-    /// the square root of samples. `None` before the first sample.
+    /// Estimate of the seconds until it is, at the pace so far, `seconds` for the film's samples.
+    /// `None` before the first sample.
     pub fn seconds_left(&self, film: &Film, seconds: f64) -> Option<f64> {
         let n_samples = f64::from(film.n_samples());
         if n_samples == 0.0 {
@@ -61,8 +62,8 @@ impl Goal {
         let by_time = self.seconds.map(|limit| limit - seconds);
         let by_noise = self
             .noise_percent
-            .zip(film.noise_percent())
-            .map(|(goal, now)| seconds * ((now / goal).powi(2) - 1.0));
+            .zip(film.noise())
+            .map(|(goal, noise)| seconds * (noise.samples_to(goal) - 1.0));
         let nearest = [by_time, by_noise].into_iter().flatten().fold(by_samples, f64::min);
         Some(nearest.max(0.0))
     }
@@ -161,8 +162,8 @@ struct Shared {
     changed: Condvar,
     /// Stops refinement, not previews.
     stop_refining: AtomicBool,
-    /// Stops everything.
-    stop_all: AtomicBool,
+    /// Stops previews too.
+    stop_preview: AtomicBool,
     slot: Mutex<Option<Arc<Frame>>>,
     status: Mutex<Status>,
     picked: Mutex<Option<Picked>>,
@@ -219,7 +220,7 @@ impl Session {
             }),
             changed: Condvar::new(),
             stop_refining: AtomicBool::new(false),
-            stop_all: AtomicBool::new(false),
+            stop_preview: AtomicBool::new(false),
             slot: Mutex::new(None),
             status: Mutex::new(Status { n_threads: renderer.n_threads(), ..Status::default() }),
             picked: Mutex::new(None),
@@ -282,6 +283,15 @@ impl Session {
         self.shared.changed.notify_one();
     }
 
+    /// Gives up what is being rendered, its preview too: another scene is about to be submitted, and
+    /// nobody waits for a picture of this one any more.
+    pub fn abandon(&self) {
+        let orders = self.shared.orders();
+        self.shared.stop_preview.store(true, Ordering::Relaxed);
+        self.shared.stop_refining.store(true, Ordering::Relaxed);
+        drop(orders);
+    }
+
     /// While paused, a new job gets its preview and its first full sample, and no more.
     pub fn set_paused(&self, is_paused: bool) {
         let mut orders = self.shared.orders();
@@ -324,7 +334,7 @@ impl Session {
 impl Drop for Session {
     fn drop(&mut self) {
         self.shared.orders().is_closing = true;
-        self.shared.stop_all.store(true, Ordering::Relaxed);
+        self.shared.stop_preview.store(true, Ordering::Relaxed);
         self.shared.stop_refining.store(true, Ordering::Relaxed);
         self.shared.changed.notify_one();
         self.picks = None;

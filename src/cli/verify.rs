@@ -52,7 +52,7 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     let pool = threads::pool("render", n_threads)?;
     let world = world_of(&loaded, AcceleratorKind::default(), &pool)?;
     let goal = Goal { samples: record.samples, seconds: None, noise_percent: None };
-    let mut progress = Progress::new(u64::from(record.samples), arguments.quiet);
+    let mut progress = Progress::new(goal, arguments.quiet);
     let never = AtomicBool::new(false);
     let Developed { film, n_invalid } =
         develop(&world, &pool, goal, Instant::now(), &never, |film| progress.show(film))?;

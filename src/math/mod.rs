@@ -6,6 +6,7 @@ mod aabb;
 pub mod approx;
 mod batch;
 mod frame;
+mod nets;
 pub mod noise;
 pub mod portable;
 pub mod sampler;

@@ -1,11 +1,13 @@
 //! Random numbers from (seed, pixel, sample, dimension), without state.
 //!
 //! Every use of chance in a path has a dimension of its own, and every dimension yields a pair of
-//! numbers. With [`Sampler::Sobol`] each pair is a (0, 2)-sequence over the samples of a pixel,
-//! scrambled and shuffled independently of every other pair and pixel (padding). So is the choice
+//! numbers. With [`Sampler::Sobol`] each pair is a (0, 2)-sequence over the samples of a pixel, in an
+//! order of its own (padding) but for the first pairs of a path, which are a net together; and the
+//! pixels of a block share them out so that their errors cancel (see `math/nets.rs`). So is the choice
 //! of one number: the first of a pair.
 
-use crate::math::sobol::{laine_karras, owen_scramble, sobol_1};
+use crate::math::nets;
+use crate::math::sobol::{owen_scramble, second_dimension};
 
 /// Where the numbers come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,41 +28,107 @@ pub enum Sampler {
 #[derive(Clone, Copy, Debug)]
 pub struct SampleNumbers {
     sampler: Sampler,
-    pixel_hash: u32,
+    /// Of the block of pixels for Sobol points, else of the pixel.
+    hash: u32,
+    /// In its block, in three orders: neighbours are first those in a row, a column, a diagonal.
+    places: [u8; 3],
     sample: u32,
 }
 
+/// Which pairs form a net of four dimensions with each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Net {
+    /// The first pair of all, in the order of the sequence.
+    First,
+    /// Pairs that form a net with the first, and with those of the third kind.
+    Second,
+    /// Pairs that form a net with the first, and with those of the second kind.
+    Third,
+}
+
 impl Sampler {
-    /// The numbers of sample `sample` of the pixel in column `x` and row `y`.
+    /// The numbers of sample `sample` (below 2^24) of the pixel in column `x` and row `y`.
     #[inline]
     pub fn numbers(self, x: u32, y: u32, sample: u32) -> SampleNumbers {
-        let seed = match self {
-            Self::Sobol { seed } | Self::Random { seed } => seed,
+        let (seed, unit) = match self {
+            Self::Sobol { seed } => (seed, nets::BLOCK_SIZE),
+            Self::Random { seed } => (seed, 1),
         };
-        let pixel_hash = mix(mix(seed ^ 0x9e37_79b9).wrapping_add(x | y << 16));
-        SampleNumbers { sampler: self, pixel_hash, sample }
+        let hash = mix(mix(seed ^ 0x9e37_79b9).wrapping_add((x / unit) | ((y / unit) << 16)));
+        let places = [nets::place_of(x, y), nets::place_of(y, x), nets::place_of(x, x ^ y)];
+        SampleNumbers { sampler: self, hash, places, sample }
     }
 }
 
 impl SampleNumbers {
-    /// Two numbers in [0, 1) for one dimension.
+    /// Two numbers in [0, 1) for one dimension, in an order of its own.
     #[inline]
     pub fn pair(&self, dimension: u32) -> [f32; 2] {
-        let key = mix(self.pixel_hash ^ dimension.wrapping_mul(0x85eb_ca6b));
+        let key = self.key(dimension);
         match self.sampler {
             Sampler::Sobol { .. } => {
-                // Reversed twice, the index stays as it is: see `owen_scramble` and `sobol_0`.
-                let index = laine_karras(self.sample.reverse_bits(), key).reverse_bits();
-                let x = laine_karras(index, mix(key ^ 0x68e3_1da4)).reverse_bits();
-                let y = owen_scramble(sobol_1(index), mix(key ^ 0xb529_7a4d));
-                [unit(x), unit(y)]
+                let order = mix(key ^ u32::from(self.places[0]).wrapping_mul(0x9e37_79b9));
+                self.point(key, shuffled(self.sample, order))
             }
-            Sampler::Random { .. } => {
-                let x = mix(key ^ mix(self.sample ^ 0x68e3_1da4));
-                [unit(x), unit(mix(x ^ key.rotate_left(16)))]
-            }
+            Sampler::Random { .. } => self.random(key),
         }
     }
+
+    /// Two numbers in [0, 1) for one dimension, which are a net with those of other kinds. Numbers of
+    /// two dimensions of one kind should not be factors of one product.
+    #[inline]
+    pub fn joint_pair(&self, dimension: u32, net: Net) -> [f32; 2] {
+        let key = self.key(dimension);
+        match self.sampler {
+            Sampler::Sobol { .. } => {
+                let index = match net {
+                    Net::First => self.sample,
+                    Net::Second => nets::reordered(0, self.sample),
+                    Net::Third => nets::reordered(1, self.sample),
+                };
+                self.point(key, index)
+            }
+            Sampler::Random { .. } => self.random(key),
+        }
+    }
+
+    #[inline]
+    fn key(&self, dimension: u32) -> u32 {
+        mix(self.hash ^ dimension.wrapping_mul(0x85eb_ca6b))
+    }
+
+    /// A point of the sequence, shifted by the pixel's place and scrambled as in its whole block.
+    #[inline]
+    fn point(&self, key: u32, index: u32) -> [f32; 2] {
+        // Every dimension sees the block's pixels in another order, so that their errors in two
+        // dimensions have nothing to do with each other.
+        let place = self.places[(((key >> 8) * 3) >> 24) as usize];
+        let place = owen_scramble(u32::from(place), mix(key ^ 0x2545_f491)) as u8;
+        let [shift_x, shift_y] = nets::shift(place);
+        let x = owen_scramble(index ^ shift_x, mix(key ^ 0x68e3_1da4));
+        let y = owen_scramble(second_dimension(index) ^ shift_y, mix(key ^ 0xb529_7a4d));
+        [unit(x.reverse_bits()), unit(y.reverse_bits())]
+    }
+
+    #[inline]
+    fn random(&self, key: u32) -> [f32; 2] {
+        let x = mix(key ^ mix(self.sample ^ 0x68e3_1da4));
+        [unit(x), unit(mix(x ^ key.rotate_left(16)))]
+    }
+}
+
+/// Another order of all indices, in which every block of the first 2^k stays what it is, and aligned
+/// blocks stay together.
+#[inline]
+fn shuffled(index: u32, key: u32) -> u32 {
+    if index < 2 {
+        return index;
+    }
+    // The bits below the highest, as the leading digits of a number.
+    let n_bits = index.ilog2();
+    let digits = (index << (32 - n_bits)).reverse_bits();
+    let digits = owen_scramble(digits, key.wrapping_add(n_bits));
+    1 << n_bits | digits.reverse_bits() >> (32 - n_bits)
 }
 
 /// A number in [0, 1) from the upper 24 bits.
@@ -73,7 +141,7 @@ fn unit(x: u32) -> f32 {
 ///
 /// Source: the "lowbias32" constants of C. Wellons, "Prospecting for Hash Functions", 2018.
 #[inline]
-pub fn mix(mut x: u32) -> u32 {
+pub const fn mix(mut x: u32) -> u32 {
     x ^= x >> 16;
     x = x.wrapping_mul(0x7feb_352d);
     x ^= x >> 15;
@@ -85,35 +153,79 @@ pub fn mix(mut x: u32) -> u32 {
 mod tests {
     use super::*;
 
-    #[test]
-    fn sobol_pairs_are_stratified_over_the_samples_of_a_pixel() {
-        let sampler = Sampler::Sobol { seed: 3 };
-        for dimension in [0, 1, 2, 65_537] {
-            let mut cells = [0; 256];
-            for sample in 256..512 {
-                let [x, y] = sampler.numbers(17, 4, sample).pair(dimension);
-                cells[(x * 16.0) as usize * 16 + (y * 16.0) as usize] += 1;
-            }
-            assert_eq!(cells, [1; 256], "dimension {dimension}");
+    const SOBOL: Sampler = Sampler::Sobol { seed: 3 };
+
+    /// All ways to get a pair, by number.
+    fn any_pair(numbers: &SampleNumbers, way: u32) -> [f32; 2] {
+        match way {
+            0 => numbers.joint_pair(0, Net::First),
+            1 => numbers.joint_pair(1, Net::Second),
+            2 => numbers.joint_pair(16, Net::Third),
+            _ => numbers.pair(65_534 + way),
         }
     }
 
-    /// Chi-square over 16 x 16 cells, and no correlation between dimensions, pixels and samples.
+    #[test]
+    fn sobol_pairs_are_stratified_over_the_samples_of_a_pixel() {
+        for way in 0..6 {
+            for first in [0, 256, 512] {
+                let mut cells = [0; 256];
+                for sample in first..first + 256 {
+                    let [x, y] = any_pair(&SOBOL.numbers(17, 4, sample), way);
+                    cells[(x * 16.0) as usize * 16 + (y * 16.0) as usize] += 1;
+                }
+                assert_eq!(cells, [1; 256], "way {way}, from {first}");
+            }
+        }
+    }
+
+    #[test]
+    fn joint_pairs_are_stratified_together() {
+        // Of t = 3: boxes of volume 8 / 4096 hold eight points each, whatever their shape.
+        let of_two = |a: u32, b: u32| {
+            let mut cells = vec![0; 512];
+            for sample in 0..4096 {
+                let numbers = SOBOL.numbers(17, 4, sample);
+                let ([x, y], [z, w]) = (any_pair(&numbers, a), any_pair(&numbers, b));
+                let place = |v: f32, n: f32| (v * n) as usize;
+                cells[((place(x, 8.0) * 4 + place(y, 4.0)) * 4 + place(z, 4.0)) * 4
+                    + place(w, 4.0)] += 1;
+            }
+            cells
+        };
+        assert_eq!(of_two(0, 1), [8; 512], "pixel and lens");
+        assert_ne!(of_two(0, 3), [8; 512], "the test can fail");
+    }
+
+    #[test]
+    fn shuffling_keeps_blocks_of_the_first_samples() {
+        let mut seen = vec![false; 1 << 12];
+        for key in [1, 0xdead_beef] {
+            seen.fill(false);
+            for index in 0..1_u32 << 12 {
+                let shuffled = shuffled(index, key);
+                let bits = |index: u32| 32 - index.leading_zeros();
+                assert_eq!(bits(shuffled), bits(index), "{index} has become {shuffled}");
+                assert!(!std::mem::replace(&mut seen[shuffled as usize], true), "{shuffled} twice");
+            }
+            let moved = (0..1 << 12).filter(|index| shuffled(*index, key) != *index).count();
+            assert!(moved > 4000, "only {moved} of 4096 moved");
+        }
+    }
+
+    /// Chi-square over 16 x 16 cells, and no correlation between dimensions.
     #[test]
     fn numbers_are_uniform_and_independent() {
         for sampler in [Sampler::Sobol { seed: 9 }, Sampler::Random { seed: 9 }] {
             let mut cells = [0_u32; 256];
             let n = 1 << 16;
-            let (mut across_dimensions, mut across_pixels) = (0.0_f64, 0.0_f64);
+            let mut across_dimensions = 0.0_f64;
             for i in 0..n {
-                // One sample a pixel, so that the points of both samplers are independent.
-                let numbers = sampler.numbers(i % 256, i / 256, 5);
+                // One pixel a block, so that the points of both samplers are independent.
+                let numbers = sampler.numbers(i % 256 * 16 + 3, i / 256 * 16 + 11, 5);
                 let [x, y] = numbers.pair(7);
                 cells[(x * 16.0) as usize * 16 + (y * 16.0) as usize] += 1;
-                let x = f64::from(x) - 0.5;
-                across_dimensions += x * (f64::from(numbers.pair(8)[0]) - 0.5);
-                let neighbour = sampler.numbers(i % 256 + 1, i / 256, 5);
-                across_pixels += x * (f64::from(neighbour.pair(7)[0]) - 0.5);
+                across_dimensions += (f64::from(x) - 0.5) * (f64::from(numbers.pair(8)[0]) - 0.5);
             }
             let expected = f64::from(n) / 256.0;
             let chi2: f64 =
@@ -122,7 +234,36 @@ mod tests {
             // Five standard deviations of a sum of n products of variance 1/144.
             let limit = 5.0 * (f64::from(n) / 144.0).sqrt();
             assert!(across_dimensions.abs() < limit, "{sampler:?}: {across_dimensions}");
-            assert!(across_pixels.abs() < limit, "{sampler:?}: {across_pixels}");
+        }
+    }
+
+    /// The mean over 4 x 4 pixels is far nearer to its expectation than that of independent pixels where
+    /// one dimension counts alone. Where only the product of two does it is at most twice as far off, in
+    /// squares: two points that are stratified in both dimensions lie on a diagonal.
+    #[test]
+    fn neighbours_share_the_square_out() {
+        let variance = |sampler: Sampler, n_samples: u32, of: fn(f64, f64) -> f64| {
+            let mut sum = 0.0;
+            for block in 0..4096 {
+                let mut mean = 0.0;
+                for i in 0..16 * n_samples {
+                    let (x, y) = (block % 64 * 4 + i % 4, block / 64 * 4 + i / 4 % 4);
+                    let numbers = sampler.numbers(x, y, i / 16);
+                    let [a, b] = [numbers.pair(7)[1], numbers.pair(8)[0]].map(f64::from);
+                    mean += of(a - 0.5, b - 0.5) / f64::from(16 * n_samples);
+                }
+                sum += mean * mean / 4096.0;
+            }
+            sum
+        };
+        let random = Sampler::Random { seed: 1 };
+        for n_samples in [1, 2, 4] {
+            let alone = |sampler| variance(sampler, n_samples, |a, _| a);
+            let share = alone(SOBOL) / alone(random);
+            assert!(share < 0.04, "{n_samples} samples, one dimension: {share}");
+            let both = |sampler| variance(sampler, n_samples, |a, b| a * b);
+            let share = both(SOBOL) / both(random);
+            assert!(share < 2.2, "{n_samples} samples, product of two: {share}");
         }
     }
 }

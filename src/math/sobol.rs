@@ -3,40 +3,28 @@
 //! The first two Sobol dimensions form a (0, 2)-sequence: any 2^k successive aligned points fall
 //! one to each elementary interval. Scrambling keeps that and makes every point uniform.
 
-/// First Sobol dimension of `index`: van der Corput's sequence, as a 0.32 fixed-point number.
-#[inline]
-pub fn sobol_0(index: u32) -> u32 {
-    index.reverse_bits()
-}
-
-/// Second Sobol dimension of `index`, as a 0.32 fixed-point number.
+/// Second Sobol dimension of `index`, with the digit of most weight in bit 0. The first dimension,
+/// van der Corput's sequence, written so is the index itself.
 ///
 /// Its generator matrix is Pascal's triangle modulo 2, a tensor power of [[1, 1], [0, 1]], so five
 /// masked shifts multiply by it.
 #[inline]
-pub fn sobol_1(index: u32) -> u32 {
-    let mut x = index.reverse_bits();
-    x ^= (x << 1) & 0xaaaa_aaaa;
-    x ^= (x << 2) & 0xcccc_cccc;
-    x ^= (x << 4) & 0xf0f0_f0f0;
-    x ^= (x << 8) & 0xff00_ff00;
-    x ^ ((x << 16) & 0xffff_0000)
+pub fn second_dimension(index: u32) -> u32 {
+    let mut x = index;
+    x ^= (x >> 1) & 0x5555_5555;
+    x ^= (x >> 2) & 0x3333_3333;
+    x ^= (x >> 4) & 0x0f0f_0f0f;
+    x ^= (x >> 8) & 0x00ff_00ff;
+    x ^ (x >> 16)
 }
 
-/// Owen's nested uniform scramble of a 0.32 fixed-point number, by a hash in which every bit is
-/// flipped depending on the bits above it only.
+/// Owen's nested uniform scramble, by a hash in which every bit is flipped depending on the bits
+/// below it only: of a number with the digit of most weight in bit 0.
 ///
 /// Source: S. Laine and T. Karras, "Stratified Sampling for Stochastic Transparency", EGSR 2011;
 /// B. Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020; constants by N. Vegdahl.
 #[inline]
-pub fn owen_scramble(x: u32, seed: u32) -> u32 {
-    laine_karras(x.reverse_bits(), seed).reverse_bits()
-}
-
-/// The scramble of [`owen_scramble`] on a number whose bits are in reversed order: each bit depends
-/// on those below it.
-#[inline]
-pub fn laine_karras(mut x: u32, seed: u32) -> u32 {
+pub fn owen_scramble(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
     x = x.wrapping_add(seed);
     x = x.wrapping_mul((seed >> 16) | 1);
@@ -63,7 +51,8 @@ mod tests {
     #[test]
     fn masked_shifts_agree_with_the_direction_numbers() {
         for index in (0..100_000).chain([u32::MAX, 1 << 31, 0x1234_5678]) {
-            assert_eq!(sobol_1(index), by_direction_numbers(index), "index {index}");
+            let found = second_dimension(index).reverse_bits();
+            assert_eq!(found, by_direction_numbers(index), "index {index}");
         }
     }
 
@@ -75,8 +64,9 @@ mod tests {
                 let bits_y = 6 - bits_x;
                 let mut counts = [0; 64];
                 for index in first..first + 64 {
-                    let x = u64::from(owen_scramble(sobol_0(index), seed)) >> (32 - bits_x);
-                    let y = u64::from(owen_scramble(sobol_1(index), seed + 9)) >> (32 - bits_y);
+                    let leading = |x: u32, bits: u32| u64::from(x.reverse_bits()) >> (32 - bits);
+                    let x = leading(owen_scramble(index, seed), bits_x);
+                    let y = leading(owen_scramble(second_dimension(index), seed + 9), bits_y);
                     counts[(x << bits_y | y) as usize] += 1;
                 }
                 assert_eq!(counts, [1; 64], "seed {seed}, {bits_x} bits of x");

@@ -14,7 +14,7 @@ use glam::{Vec2, Vec3};
 use crate::brdf::fresnel;
 use crate::color::{Rgb, luminance};
 use crate::geometry::Hit;
-use crate::math::sampler::SampleNumbers;
+use crate::math::sampler::{Net, SampleNumbers};
 use crate::math::{Ray, RayBatch};
 use crate::render::PassStatistics;
 use crate::render::pixel::PixelSums;
@@ -160,9 +160,13 @@ impl<'a> TileRenderer<'a> {
             let first = pixels[pixel].n_samples;
             for sample in first..goals[pixel].min(first + n_at_once) {
                 let numbers = job.settings.sampler.numbers(x, y, sample);
-                let [dx, dy] = numbers.pair(dimension::PIXEL);
+                let [dx, dy] = numbers.joint_pair(dimension::PIXEL, Net::First);
                 let at = Vec2::new(x as f32 + dx, y as f32 + dy);
-                self.rays.push(job.scene.camera.ray(at, size, numbers.pair(dimension::LENS)));
+                self.rays.push(job.scene.camera.ray(
+                    at,
+                    size,
+                    numbers.joint_pair(dimension::LENS, Net::Second),
+                ));
                 self.paths.push(Path {
                     slot: self.paths.len() as u32,
                     throughput: Rgb::ONE,
@@ -205,6 +209,17 @@ impl<'a> TileRenderer<'a> {
         }
     }
 
+    /// Two numbers to choose a direction by; at what the camera sees, a net together with pixel and
+    /// lens. Light, probe and scattering are terms of a sum, so they can be nets of one kind.
+    fn first_net(&self, path: Path, purpose: u32) -> [f32; 2] {
+        let dimension = dimension::of(path.depth, purpose);
+        if path.depth > 0 {
+            return path.numbers.pair(dimension);
+        }
+        let is_pinhole = self.world.job.scene.camera.aperture_radius == 0.0;
+        path.numbers.joint_pair(dimension, if is_pinhole { Net::Second } else { Net::Third })
+    }
+
     fn add(&mut self, path: Path, radiance: Rgb) {
         self.radiance[path.slot as usize] += path.throughput * radiance;
     }
@@ -230,7 +245,7 @@ impl<'a> TileRenderer<'a> {
         let is_glossy = glossy.specular != Rgb::ZERO && wo.z > 0.0;
         for (index, light) in scene.lights.iter().enumerate() {
             let purpose = dimension::FIRST_LIGHT + index as u32;
-            let u = path.numbers.pair(dimension::of(path.depth, purpose));
+            let u = self.first_net(path, purpose);
             let Some(sample) = light.sample(shading.surface.point, u) else { continue };
             if !shading.is_above(sample.direction) {
                 continue;
@@ -253,7 +268,7 @@ impl<'a> TileRenderer<'a> {
     fn probe_lights(&mut self, path: Path, shading: &Shading<'_>, wo: Vec3) {
         let scene = &*self.world.job.scene;
         let lobe = &shading.glossy.lobe;
-        let u = path.numbers.pair(dimension::of(path.depth, dimension::PROBE));
+        let u = self.first_net(path, dimension::PROBE);
         let Some(wi) = lobe.sample(wo, u) else { return };
         let direction = shading.frame.world_from_local(wi);
         let pdf = lobe.pdf(wo, wi);
@@ -343,7 +358,7 @@ impl<'a> TileRenderer<'a> {
     /// A scattered direction, and the BRDF times the cosine over its density.
     fn scatter(&self, path: Path, shading: &Shading<'_>) -> Option<(Vec3, Rgb)> {
         let wo = shading.frame.local_from_world(shading.wo);
-        let u = path.numbers.pair(dimension::of(path.depth, dimension::SCATTER));
+        let u = self.first_net(path, dimension::SCATTER);
         let wi = shading.glossy.sample(wo, u)?;
         let direction = shading.frame.world_from_local(wi).normalize();
         let pdf = shading.glossy.pdf(wo, wi);

@@ -12,6 +12,7 @@ use super::lens_overlay::LensOverlay;
 use super::picture::PictureDisplay;
 use super::probe::Probe;
 use super::recovery::Recovery;
+use super::settings::Settings;
 use super::start::Thumbnails;
 use super::state::{InterfaceState, Remembered};
 use super::swatches::Swatches;
@@ -33,6 +34,7 @@ use std::sync::Arc;
 pub(super) struct App {
     pub(super) document: Document,
     pub(super) interface: InterfaceState,
+    settings: Settings,
     pub(super) files: FileWork,
     pub(super) work: RenderWork,
     pub(super) dialogs: PathDialogs,
@@ -116,12 +118,14 @@ impl App {
         if let (false, Some(path)) = (complaints.is_empty(), &keys_file) {
             toasts.fail(format!("{}\n{}", path.display(), complaints.join("\n")));
         }
+        let settings = Settings::new(own_folder.as_deref(), remembered.clone());
         let interface = remembered.restore();
         ctx.set_theme(interface.theme);
         Ok(Self {
             home_camera: empty.camera.clone(),
             document: Document::new(empty, None),
             interface,
+            settings,
             files,
             work: RenderWork::new(session),
             dialogs: PathDialogs::default(),
@@ -267,8 +271,8 @@ impl eframe::App for App {
         self.recovery.forget();
     }
 
-    fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        eframe::set_value(storage, Remembered::KEY, &Remembered::of(&self.interface));
+    fn save(&mut self, _storage: &mut dyn eframe::Storage) {
+        self.settings.keep(&Remembered::of(&self.interface));
     }
 }
 

@@ -108,16 +108,14 @@ impl Default for Remembered {
 }
 
 impl Remembered {
-    /// Where it is kept in the program's storage.
-    pub(super) const KEY: &'static str = "penumbra";
-
     /// What of this state is kept.
     pub(super) fn of(state: &InterfaceState) -> Self {
         Self {
             panel_shown: state.panel_shown,
             fixed_size: state.size_mode == SizeMode::Fixed,
             scene_unit_mm: state.scene_unit_mm,
-            recent: state.recent.clone(),
+            // A name that is no text cannot be written down.
+            recent: state.recent.iter().filter(|path| path.to_str().is_some()).cloned().collect(),
             export: state.export.clone(),
             theme: state.theme,
             panel_width: state.panel_width,

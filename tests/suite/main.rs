@@ -9,11 +9,15 @@ mod cli;
 #[cfg(test)]
 mod common;
 #[cfg(test)]
+mod corpus;
+#[cfg(test)]
 mod density;
 #[cfg(test)]
 mod features;
 #[cfg(test)]
 mod floors;
+#[cfg(test)]
+mod golden;
 #[cfg(test)]
 mod hostile;
 #[cfg(test)]

@@ -1,8 +1,14 @@
-//! The noise figure against the true error.
+//! Error: the noise figure against the truth, how fast it falls, and how it is spread in the picture.
 
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use penumbra::render::{Film, World, plan, render_pass};
+use penumbra::geometry::AcceleratorKind;
+use penumbra::io::gallery::GALLERY;
+use penumbra::loader::{Loaded, Source, load};
+use penumbra::math::sampler::Sampler;
+use penumbra::render::{Film, RenderJob, RenderSettings, World, plan, render_pass};
+use penumbra::scene::resolve;
 
 use crate::common::job;
 
@@ -65,5 +71,163 @@ fn the_noise_figure_is_near_the_true_error() {
             let what = format!("{figure} %, not {truth} %, at {goal} {sampler} samples");
             assert!((0.7..1.4).contains(&ratio), "{integrator}: {what}");
         }
+    }
+}
+
+/// A scene of the gallery in a small picture, of which `zoom` pixels go into one of the same field of
+/// view.
+fn gallery_world(loaded: &Loaded, width: u32, zoom: f64) -> World {
+    let mut description = loaded.description.clone();
+    description.camera.vertical_fov /= zoom;
+    let render = &mut description.render;
+    render.height = width * render.height / render.width;
+    render.width = width;
+    World::new(RenderJob {
+        scene: Arc::new(resolve(&description, &loaded.assets).unwrap()),
+        width,
+        height: description.render.height,
+        settings: RenderSettings::new(&description.render, AcceleratorKind::default()),
+    })
+}
+
+fn opened(name: &'static str) -> Loaded {
+    load(&Source::Gallery(name), &[], &AtomicBool::new(false)).unwrap()
+}
+
+fn add(world: &World, film: &mut Film, n_samples: u32) {
+    let n = n_samples - film.n_samples();
+    render_pass(world, film, n, &AtomicBool::new(false)).unwrap();
+}
+
+fn luminances(film: &Film) -> Vec<f64> {
+    let of = |p: &[f32; 3]| {
+        let [r, g, b] = p.map(f64::from);
+        0.2126 * r + 0.7152 * g + 0.0722 * b
+    };
+    film.picture().pixels.iter().map(of).collect()
+}
+
+/// Mean squared error at each count, from pictures that differ in their seed only, the mean of the
+/// squared noise figures as an error of that kind, and the largest doubt of a figure.
+fn errors(
+    world: &mut World,
+    sampler: fn(u32) -> Sampler,
+    n_seeds: u32,
+    counts: &[u32],
+) -> Vec<[f64; 3]> {
+    let mut pictures = vec![Vec::new(); counts.len()];
+    let mut figures = vec![[0.0_f64; 2]; counts.len()];
+    for seed in 0..n_seeds {
+        world.job.settings.sampler = sampler(seed);
+        let mut film = Film::new(world.job.width, world.job.height).unwrap();
+        for ((count, pictures), figure) in counts.iter().zip(&mut pictures).zip(&mut figures) {
+            add(world, &mut film, *count);
+            let values = luminances(&film);
+            let mean = values.iter().sum::<f64>() / values.len() as f64;
+            let noise = film.noise().unwrap();
+            figure[0] += (0.01 * noise.percent * mean).powi(2) / f64::from(n_seeds);
+            figure[1] = figure[1].max(noise.uncertainty);
+            pictures.push(values);
+        }
+    }
+    let n = f64::from(n_seeds);
+    let variance = |pictures: &Vec<Vec<f64>>| {
+        let n_pixels = pictures[0].len();
+        let spread = |place: usize| {
+            let values = pictures.iter().map(|picture| picture[place]);
+            let mean = values.clone().sum::<f64>() / n;
+            values.map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0)
+        };
+        (0..n_pixels).map(spread).sum::<f64>() / n_pixels as f64
+    };
+    pictures.iter().zip(figures).map(|(p, [figure, doubt])| [variance(p), figure, doubt]).collect()
+}
+
+const RANDOM: fn(u32) -> Sampler = |seed| Sampler::Random { seed };
+const SOBOL: fn(u32) -> Sampler = |seed| Sampler::Sobol { seed };
+
+/// Within a quarter, for every scene of the gallery and both samplers, and nearly always within twice
+/// its own doubt.
+#[test]
+fn the_noise_figure_holds_for_the_gallery() {
+    /// What five pictures of so few pixels leave open of the truth itself.
+    const TRUTH_DOUBT: f64 = 0.08;
+    let counts = [16, 32];
+    let (mut faults, mut n_beyond_doubt) = (Vec::new(), 0);
+    for entry in GALLERY {
+        let mut world = gallery_world(&opened(entry.name), 40, 1.0);
+        for (name, sampler) in [("random", RANDOM), ("sobol", SOBOL)] {
+            for (count, [truth, figure, doubt]) in
+                counts.iter().zip(errors(&mut world, sampler, 5, &counts))
+            {
+                let ratio = (figure / truth).sqrt();
+                n_beyond_doubt += u32::from((ratio - 1.0).abs() > 2.0 * doubt.hypot(TRUTH_DOUBT));
+                if !(0.75..1.25).contains(&ratio) {
+                    faults.push(format!("{}: {ratio} of the truth at {count} {name}", entry.name));
+                }
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+    assert!(n_beyond_doubt <= 3, "{n_beyond_doubt} of 48 figures are off by more than they say");
+}
+
+/// What lens and lights cost: squared error at 64 samples, and how it falls with their number, in
+/// pixels as small as those of a picture 640 wide.
+#[test]
+fn sobol_points_beat_random_ones_on_lens_and_penumbra() {
+    for (name, least_gain, slope) in [("depth-of-field", 6.0, -0.6), ("soft-shadows", 10.0, -0.6)] {
+        let mut world = gallery_world(&opened(name), 80, 8.0);
+        let [random] = errors(&mut world, RANDOM, 2, &[64])[..] else { unreachable!() };
+        let [few, many] = errors(&mut world, SOBOL, 2, &[16, 64])[..] else { unreachable!() };
+        let gain = random[0] / many[0];
+        let found = 0.5 * (many[0] / few[0]).log(4.0);
+        assert!(gain >= least_gain, "{name}: squared error {gain} times smaller at 64 samples");
+        assert!(found <= slope, "{name}: error falls with slope {found}");
+    }
+}
+
+/// The error has few low frequencies: what is left of it after a blur is less than of white noise.
+#[test]
+fn the_error_is_blue() {
+    const WIDTH: usize = 96;
+    const HEIGHT: usize = 64;
+    let mut world = World::new(job(&format!(
+        "[render]\nwidth = {WIDTH}\nheight = {HEIGHT}\n\
+         [camera]\neye = [0, 2, 4]\ntarget = [0, 0, 0]\n\
+         [[materials]]\nname = 'm'\ndiffuse = [0.7, 0.6, 0.5]\n\
+         [[objects]]\ntype = 'plane'\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nmaterial = 'm'\n\
+         [[objects]]\ntype = 'box'\nmin = [-9, 1.5, -9]\nmax = [0, 1.6, 9]\nmaterial = 'm'\n\
+         [[lights]]\ntype = 'rectangle'\nposition = [0, 3, 0]\nsize = [4, 4]\nvisible = false\n\
+         power = [300, 300, 300]\n"
+    )));
+    let mut picture = |sampler: Sampler, n_samples: u32| {
+        world.job.settings.sampler = sampler;
+        let mut film = Film::new(WIDTH as u32, HEIGHT as u32).unwrap();
+        add(&world, &mut film, n_samples);
+        luminances(&film)
+    };
+    let truth = picture(SOBOL(99), 512);
+    // Gaussian of a standard deviation of two pixels.
+    let kernel: Vec<f64> = (-6..=6).map(|i: i32| (-f64::from(i * i) / 8.0).exp()).collect();
+    let of_white = kernel.iter().map(|k| k * k).sum::<f64>().powi(2);
+    let low_energy = |picture: &[f64]| {
+        let error = |x: usize, y: usize| picture[y * WIDTH + x] - truth[y * WIDTH + x];
+        let (mut low, mut all, mut n_low) = (0.0, 0.0, 0.0);
+        for y in 0..HEIGHT - 12 {
+            for x in 0..WIDTH - 12 {
+                let row = |j: usize| (0..13).map(|i| kernel[i] * error(x + i, y + j)).sum::<f64>();
+                low += (0..13).map(|j| kernel[j] * row(j)).sum::<f64>().powi(2);
+                n_low += 1.0;
+            }
+        }
+        all += (0..WIDTH * HEIGHT).map(|i| (picture[i] - truth[i]).powi(2)).sum::<f64>();
+        (low / n_low) / (all / (WIDTH * HEIGHT) as f64 * of_white)
+    };
+    for (n_samples, most) in [(1, 0.35), (2, 0.4), (4, 0.5), (8, 0.8)] {
+        let sobol = low_energy(&picture(SOBOL(1), n_samples));
+        let random = low_energy(&picture(RANDOM(1), n_samples));
+        assert!(sobol < most, "{sobol} of white noise at {n_samples} samples");
+        assert!((0.7..1.3).contains(&random), "{random} at {n_samples} random samples");
     }
 }

@@ -2,5 +2,6 @@
 
 mod closed;
 mod invariance;
+mod memory;
 mod rays;
 mod work;

@@ -200,13 +200,13 @@ fn unsaved_edits_survive_a_crash() {
         harness.key_press(egui::Key::D);
         harness.run_steps(3);
         harness.run_steps(80);
-        wait_until(&mut harness, |_| own.join("recovery.png").is_file());
+        wait_until(&mut harness, |_| own.join("recovery-1.png").is_file());
         harness.state().document.description.clone()
     };
     let mut harness = window_with(&path, [1024.0, 700.0], Some(own));
     assert_ne!(harness.state().document.description, edited, "the file was saved");
     harness.get_by_role_and_label(Role::Button, "Restore it").click();
-    wait_until(&mut harness, |app| app.files.title == "recovery");
+    wait_until(&mut harness, |app| app.files.title == "recovery-1");
     let restored = &harness.state().document.description;
     assert_eq!(*restored, edited, "the edits were lost");
 }

@@ -91,7 +91,7 @@ fn facing_mirrors_show_each_other_max_depth_times() {
         let found = Look::at([0.0; 3], [0.1, 0.2, 1.0]).with(render).radiance(body).x;
         assert_close(found, partial_sum(0.9, depth), 1e-5, render);
     }
-    let deep = Look::at([0.0; 3], [0.1, 0.2, 1.0]).with("max_depth = 60").samples(1024);
+    let deep = Look::at([0.0; 3], [0.1, 0.2, 1.0]).with("max_depth = 60").samples(8192);
     assert_close(deep.radiance(body).x, partial_sum(0.9, 60), 0.01, "60 mirrors");
 }
 
