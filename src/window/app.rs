@@ -91,8 +91,7 @@ impl App {
         first: Source,
         own_folder: Option<PathBuf>,
     ) -> std::io::Result<Self> {
-        // One processor is left to the window itself.
-        let n_threads = threads::available().saturating_sub(1).max(1);
+        let n_threads = remembered.clone().restore().n_threads();
         let session = Session::new(n_threads, waking(ctx))?;
         Self::with_session(ctx, remembered, first, own_folder, session)
     }
@@ -194,6 +193,28 @@ impl App {
         self.interface.display.view.wanted().and(features)
     }
 
+    /// Gives the renderer as many threads as are chosen. The old one ends on a thread of its own, so
+    /// that the window does not wait for it.
+    fn fit_threads(&mut self, ctx: &egui::Context) {
+        let n_threads = self.interface.n_threads();
+        if n_threads == self.work.session.status().n_threads {
+            return;
+        }
+        let wake = ctx.clone();
+        match Session::new(n_threads, move || wake.request_repaint()) {
+            Ok(session) => {
+                let old = std::mem::replace(&mut self.work.session, session);
+                if threads::spawn("retire", move || drop(old)).is_err() {
+                    self.toasts.fail("the system has no thread left");
+                }
+            }
+            Err(error) => {
+                self.interface.n_threads = Some(self.work.session.status().n_threads);
+                self.toasts.fail(format!("cannot change the number of threads: {error}"));
+            }
+        }
+    }
+
     /// The bytes on show.
     pub(super) fn picture_on_show(&self) -> Option<&Arc<egui::ColorImage>> {
         self.picture.image()
@@ -202,6 +223,7 @@ impl App {
     /// Takes over what changed in `scene`, makes it the job, and shows the newest picture.
     fn render(&mut self, ctx: &egui::Context, scene: SceneDescription) {
         self.take_edit(scene);
+        self.fit_threads(ctx);
         if self.files.has_scene {
             let description = &self.document.description;
             let submitted = self.work.submit(description, &self.interface, self.viewport.size);

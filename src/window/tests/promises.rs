@@ -116,7 +116,10 @@ impl Stage {
         scene.tone_mapping.operator = ToneOperator::Linear;
         std::fs::write(&path, crate::io::scene_file::write(&scene)).unwrap();
         let source = Source::File(path);
-        let app = App::with_session(&ctx, Remembered::default(), source, None, session).unwrap();
+        let mut app =
+            App::with_session(&ctx, Remembered::default(), source, None, session).unwrap();
+        // Another number of threads would bring a session of its own.
+        app.interface.n_threads = Some(1);
         let mut harness = harness_of(app, [700.0, 500.0], 1.0);
         wait_until(&mut harness, |app| app.picture_on_show().is_some());
         Self { harness, n_jobs, n_passes }

@@ -324,3 +324,17 @@ fn keys_come_from_the_file_and_what_is_wrong_in_it_is_told() {
         assert_eq!(radius == 0.0, closes, "{key:?} leaves the lens at {radius}");
     }
 }
+
+#[test]
+fn another_number_of_threads_takes_over_the_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&scene_file(folder.path()), [1024.0, 700.0]);
+    wait_until(&mut harness, |app| app.work.session.latest().is_some_and(|f| f.samples == 4));
+    let n_before = harness.state().work.session.status().n_threads;
+    harness.state_mut().interface.n_threads = Some(n_before + 1);
+    wait_until(&mut harness, |app| {
+        let is_new = app.work.session.status().n_threads == n_before + 1;
+        is_new && app.work.session.latest().is_some_and(|frame| frame.samples == 4)
+    });
+    assert!(harness.state().picture_on_show().is_some(), "the picture is gone");
+}
