@@ -12,6 +12,7 @@
 #![expect(clippy::print_stdout, reason = "a bench prints its figures")]
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use glam::{DVec3, Vec3};
@@ -42,7 +43,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     threads.dedup();
     let stem = std::path::Path::new(&path).file_stem().ok_or("no file name")?;
-    let (mesh, _) = obj::load_mesh(&std::fs::read(&path)?, NormalsKind::Flat, 0.0)?;
+    let (mesh, _) =
+        obj::load_mesh(&std::fs::read(&path)?, NormalsKind::Flat, 0.0, &AtomicBool::new(false))?;
     let bounds = Aabb::of(mesh.positions.iter().copied());
     let n_triangles = mesh.triangles.len();
     let traced = Arc::new(TracedMesh::new(mesh));

@@ -8,8 +8,8 @@ use anyhow::Context;
 use clap::{Args, Parser, Subcommand};
 
 use crate::geometry::AcceleratorKind;
-use crate::io::printable;
 use crate::io::scene_file::Override;
+use crate::io::{printable, printable_ends};
 
 mod info;
 mod progress;
@@ -149,7 +149,7 @@ pub fn run(command: &Command) -> ExitCode {
 /// command line cannot reach the terminal as an escape sequence.
 pub fn explain(error: &clap::Error) -> ExitCode {
     let text = error.to_string();
-    let safe: Vec<String> = text.lines().map(printable).collect();
+    let safe: Vec<String> = text.lines().map(printable_ends).collect();
     // Where nobody is left to be told, the status still says it.
     if text.lines().eq(safe.iter()) {
         let _ = error.print();

@@ -12,7 +12,7 @@ use crate::io::folder::{FileRecord, Folder, LARGEST_ASSET};
 use crate::io::obj::ObjError;
 use crate::io::scene_file::{self, Override, OverrideError, SceneFileError, Section};
 use crate::io::snapshot::{self, RenderRecord, SnapshotError};
-use crate::io::{gallery, printable_path};
+use crate::io::{crash, gallery, printable_path};
 use crate::scene::assets::{Assets, MeshAsset, MeshKey};
 use crate::scene::description::SceneDescription;
 
@@ -122,7 +122,8 @@ pub enum LoadError {
     Cancelled,
 }
 
-/// Loads a file with overrides of its parameters. `is_cancelled` is looked at before every file.
+/// Loads a file with overrides of its parameters. `is_cancelled` is looked at before every
+/// file, and every few megabytes of a mesh.
 ///
 /// # Errors
 /// See [`LoadError`]; nothing is half loaded.
@@ -131,11 +132,12 @@ pub fn load(
     overrides: &[Override],
     is_cancelled: &AtomicBool,
 ) -> Result<Loaded, LoadError> {
-    let opened = Opened::open(source)?;
+    let opened = Opened::open(source, is_cancelled)?;
     let scene_error = |error| match error {
         SceneFileError::Override(error) => LoadError::Override(error),
         error => LoadError::Scene { name: opened.name.clone(), error },
     };
+    crash::note_scene(opened.text.as_str());
     let description = scene_file::parse(&opened.text, overrides).map_err(scene_error)?;
     let mut reading = Reading::new(&opened.folder, is_cancelled);
     reading.report.extend(opened.report.iter().cloned());
@@ -197,7 +199,7 @@ struct Opened {
 }
 
 impl Opened {
-    fn open(source: &Source) -> Result<Self, LoadError> {
+    fn open(source: &Source, is_cancelled: &AtomicBool) -> Result<Self, LoadError> {
         let path = match source {
             Source::Gallery(name) => {
                 let text = gallery::scene_text(name)
@@ -218,7 +220,7 @@ impl Opened {
             return Ok(opened);
         }
         if has_ending("obj") {
-            return Self::mesh(name, path, &bytes);
+            return Self::mesh(name, path, &bytes, is_cancelled);
         }
         let text = scene_file::text_of(bytes)
             .map_err(|error| LoadError::Scene { name: name.clone(), error })?;
@@ -238,17 +240,22 @@ impl Opened {
     }
 
     /// A mesh opened alone: framed, on a ground, softly lit.
-    fn mesh(name: String, path: &Path, bytes: &[u8]) -> Result<Self, LoadError> {
+    fn mesh(
+        name: String,
+        path: &Path,
+        bytes: &[u8],
+        is_cancelled: &AtomicBool,
+    ) -> Result<Self, LoadError> {
         let file = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
         let folder = Folder::of(path);
-        let never = AtomicBool::new(false);
-        let mut reading = Reading::new(&folder, &never);
+        let mut reading = Reading::new(&folder, is_cancelled);
         let mut description = framing::scene_around(&file, None);
         let key = description.objects.first().and_then(MeshKey::of);
         let Some(key) = key else { return Err(LoadError::NotInGallery(name)) };
-        let asset = reading
-            .mesh_of(&key, bytes)
-            .map_err(|error| LoadError::Mesh { name: name.clone(), error })?;
+        let asset = reading.mesh_of(&key, bytes).map_err(|error| match error {
+            ObjError::Cancelled => LoadError::Cancelled,
+            error => LoadError::Mesh { name: name.clone(), error },
+        })?;
         reading.records.insert(0, FileRecord::of(&file, bytes));
         let reach = asset.traced.bounds.max_abs();
         if framing::FARTHEST < reach {

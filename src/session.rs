@@ -7,6 +7,7 @@
 //! the goal is reached, or while paused, everything sleeps. No lock is held while rendering or
 //! while waking the caller.
 
+pub mod admit;
 pub mod develop;
 mod driver;
 mod renderer;
@@ -157,8 +158,8 @@ struct Shared {
     changed: Condvar,
     /// Stops refinement, not previews.
     stop_refining: AtomicBool,
-    /// Stops everything.
-    stop_all: AtomicBool,
+    /// Stops previews too.
+    stop_preview: AtomicBool,
     slot: Mutex<Option<Arc<Frame>>>,
     status: Mutex<Status>,
     picked: Mutex<Option<Picked>>,
@@ -213,7 +214,7 @@ impl Session {
             }),
             changed: Condvar::new(),
             stop_refining: AtomicBool::new(false),
-            stop_all: AtomicBool::new(false),
+            stop_preview: AtomicBool::new(false),
             slot: Mutex::new(None),
             status: Mutex::new(Status { n_threads: renderer.n_threads(), ..Status::default() }),
             picked: Mutex::new(None),
@@ -261,6 +262,15 @@ impl Session {
         self.shared.changed.notify_one();
     }
 
+    /// Gives up what is being rendered, its preview too: another scene is about to be submitted, and
+    /// nobody waits for a picture of this one any more.
+    pub fn abandon(&self) {
+        let orders = self.shared.orders();
+        self.shared.stop_preview.store(true, Ordering::Relaxed);
+        self.shared.stop_refining.store(true, Ordering::Relaxed);
+        drop(orders);
+    }
+
     /// While paused, a new job gets its preview and its first full sample, and no more.
     pub fn set_paused(&self, is_paused: bool) {
         let mut orders = self.shared.orders();
@@ -303,7 +313,7 @@ impl Session {
 impl Drop for Session {
     fn drop(&mut self) {
         self.shared.orders().is_closing = true;
-        self.shared.stop_all.store(true, Ordering::Relaxed);
+        self.shared.stop_preview.store(true, Ordering::Relaxed);
         self.shared.stop_refining.store(true, Ordering::Relaxed);
         self.shared.changed.notify_one();
         self.picks = None;

@@ -182,7 +182,8 @@ fn report(folder: &Path, options: &Options, all: &[Measured]) -> Result<(), Fail
          --samples {} --report docs\n```\n\n\
          The slope is that of log error over log samples from 16 samples on; the gain is the squared \
          error of \"random\" over that of the row at 64 samples; the last column is the least and the \
-         most that the renderer's own noise figure says, over the truth.\n\
+         most that the renderer's own noise figure says, over the truth, which two pictures of so few pixels \
+         tell no better than to a tenth or two.\n\
          In so small a picture a pixel covers a whole edge of a shadow or a circle of confusion; in one of \
          full size it does not, and Sobol points gain more.\n\n\
          ![Error against samples](convergence-samples.svg)\n\n\

@@ -11,8 +11,10 @@ use crate::scene::assets::MeshKey;
 use crate::threads;
 
 pub(super) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
-    let loaded = open(&arguments.file, &[])?;
+    let mut loaded = open(&arguments.file, &[])?;
     warn(&loaded.report, false);
+    // No picture is made, and none has to fit into memory.
+    (loaded.description.render.width, loaded.description.render.height) = (1, 1);
     let pool = threads::pool("build", threads::available())?;
     let world = world_of(&loaded, AcceleratorKind::default(), &pool)?;
     let counts = Counts::of(&loaded);

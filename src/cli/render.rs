@@ -5,12 +5,10 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use anyhow::{Context, bail};
-
 use crate::cli::progress::Progress;
 use crate::cli::{Failure, RenderArguments, print_json, warn};
 use crate::geometry::AcceleratorKind;
-use crate::io::output::{OutputFormat, replace_file};
+use crate::io::output::{OutputFormat, check_writable, replace_file};
 use crate::io::printable_path;
 use crate::io::scene_file::Override;
 use crate::io::snapshot;
@@ -18,6 +16,7 @@ use crate::loader::{LoadError, Loaded, Source, load};
 use crate::render::{RenderJob, RenderSettings, World};
 use crate::scene::resolve;
 use crate::session::Goal;
+use crate::session::admit::admit;
 use crate::session::develop::{Developed, develop, encode};
 use crate::threads;
 
@@ -29,7 +28,8 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
             printable_path(output)
         )));
     };
-    check_folder(output)?;
+    // Before hours are spent on a picture that has no place to go.
+    check_writable(output)?;
     let loaded = open(&arguments.file, &overrides(arguments))?;
     warn(&loaded.report, arguments.quiet);
     let samples = loaded.description.render.samples;
@@ -87,6 +87,7 @@ pub(super) fn world_of(
         height: render.height,
         settings: RenderSettings::new(render, accelerator),
     };
+    admit(&job)?;
     Ok(pool.install(|| World::new(job)))
 }
 
@@ -111,16 +112,4 @@ fn overrides(arguments: &RenderArguments) -> Vec<Override> {
         }
     }
     overrides
-}
-
-/// Before hours are spent on a picture that has no place to go.
-fn check_folder(output: &Path) -> anyhow::Result<()> {
-    let folder = output.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let folder = folder.unwrap_or(Path::new("."));
-    let metadata = std::fs::metadata(folder)
-        .with_context(|| format!("{}: the folder of the output", printable_path(folder)))?;
-    if !metadata.is_dir() || output.is_dir() {
-        bail!("{}: is no place for a file", printable_path(output));
-    }
-    Ok(())
 }

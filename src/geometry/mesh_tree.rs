@@ -36,6 +36,11 @@ impl TracedMesh {
         MeshTree::build(&self.mesh, kind).build_secs
     }
 
+    /// Whether the tree of that kind is built.
+    pub fn has_tree(&self, kind: AcceleratorKind) -> bool {
+        self.trees[kind as usize].get().is_some()
+    }
+
     /// The tree of that kind, built now if it is the first time it is asked for.
     pub fn tree(&self, kind: AcceleratorKind) -> &MeshTree {
         self.trees[kind as usize].get_or_init(|| MeshTree::build(&self.mesh, kind))

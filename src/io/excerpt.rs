@@ -32,17 +32,21 @@ pub fn excerpt(bytes: &[u8]) -> String {
     if head.len() < bytes.len() { text + "…" } else { text }
 }
 
-/// A path, safe to print on one line: what cannot be printed is escaped, and of one too long to be
-/// read both ends are shown.
+/// A path, safe to print on one line: see [`printable_ends`].
 pub fn printable_path(path: &Path) -> String {
+    printable_ends(&path.to_string_lossy())
+}
+
+/// A text, safe to print on one line: what cannot be printed is escaped, and of one too long to be
+/// read both ends are shown.
+pub fn printable_ends(text: &str) -> String {
     const END_CHARS: usize = 200;
-    let path = path.to_string_lossy();
-    let n_chars = path.chars().count();
+    let n_chars = text.chars().count();
     if n_chars <= 2 * END_CHARS {
-        return printable(&path);
+        return printable(text);
     }
-    let head: String = path.chars().take(END_CHARS).collect();
-    let tail: String = path.chars().skip(n_chars - END_CHARS).collect();
+    let head: String = text.chars().take(END_CHARS).collect();
+    let tail: String = text.chars().skip(n_chars - END_CHARS).collect();
     printable(&head) + "…" + &printable(&tail)
 }
 

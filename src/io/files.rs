@@ -1,10 +1,10 @@
 //! Whole files into memory: regular files only, up to a limit.
 
-use std::fs::File;
+use std::fs::{File, Metadata};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use crate::io::printable_path;
+use crate::io::{memory, printable_path};
 
 /// Why a file could not be read. The path is escaped where it is shown.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -38,38 +38,69 @@ impl FileError {
 /// Reads a regular file of at most `limit` bytes.
 ///
 /// # Errors
-/// When it is not there, cannot be read, is a folder or a device, or is longer.
+/// When it is not there, cannot be read, is a folder or a device, is longer, does not fit into
+/// memory, or is changed by another program meanwhile.
 pub fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     let system = |error: std::io::Error| match error.kind() {
         std::io::ErrorKind::NotFound => FileError::not_found(path),
         _ => FileError::new(path, error.to_string()),
     };
-    // Before it is opened: opening a pipe would wait for its writer.
-    let metadata = std::fs::metadata(path).map_err(system)?;
+    // Before it is opened: opening a device may do something.
+    check_kind(path, &std::fs::metadata(path).map_err(system)?)?;
+    let mut file = open_without_waiting(path).map_err(system)?;
+    // Of what was opened, which may be something else by now.
+    let before = file.metadata().map_err(system)?;
+    check_kind(path, &before)?;
+    let too_long = || {
+        let (length, limit) = (before.len() >> 20, limit >> 20);
+        FileError::new(path, format!("is {length} MiB long; at most {limit} MiB are read"))
+    };
+    if limit < before.len() {
+        return Err(too_long());
+    }
+    memory::check(before.len()).map_err(|error| FileError::new(path, error.to_string()))?;
+    let mut bytes = Vec::new();
+    bytes
+        .try_reserve_exact(before.len() as usize)
+        .map_err(|_| FileError::new(path, "does not fit into memory"))?;
+    // One byte more than allowed tells a file that grows.
+    file.by_ref().take(limit + 1).read_to_end(&mut bytes).map_err(system)?;
+    if limit < bytes.len() as u64 {
+        return Err(too_long());
+    }
+    check_unchanged(path, &before, &file.metadata().map_err(system)?)?;
+    Ok(bytes)
+}
+
+fn check_unchanged(path: &Path, before: &Metadata, after: &Metadata) -> Result<(), FileError> {
+    let is_same = before.len() == after.len() && before.modified().ok() == after.modified().ok();
+    if !is_same {
+        return Err(FileError::new(path, "was changed while it was read; open it again"));
+    }
+    Ok(())
+}
+
+fn check_kind(path: &Path, metadata: &Metadata) -> Result<(), FileError> {
     if metadata.is_dir() {
         return Err(FileError::new(path, "is a folder; name a file in it"));
     }
     if !metadata.is_file() {
         return Err(FileError::new(path, "is no regular file"));
     }
-    let too_long = || {
-        let (length, limit) = (metadata.len() >> 20, limit >> 20);
-        FileError::new(path, format!("is {length} MiB long; at most {limit} MiB are read"))
-    };
-    if metadata.len() > limit {
-        return Err(too_long());
+    Ok(())
+}
+
+/// Opens a file for reading. Neither this nor reading waits for somebody at the other end of a pipe
+/// that took the file's place, or for the next message of a kernel's log.
+fn open_without_waiting(path: &Path) -> std::io::Result<File> {
+    let mut options = File::options();
+    options.read(true);
+    #[cfg(target_os = "linux")]
+    {
+        use std::os::unix::fs::OpenOptionsExt;
+        options.custom_flags(rustix::fs::OFlags::NONBLOCK.bits() as i32);
     }
-    let mut bytes = Vec::new();
-    bytes
-        .try_reserve_exact(metadata.len() as usize)
-        .map_err(|_| FileError::new(path, "does not fit into memory"))?;
-    // One byte more than allowed tells a file that grows.
-    let file = File::open(path).map_err(system)?;
-    file.take(limit + 1).read_to_end(&mut bytes).map_err(system)?;
-    if bytes.len() as u64 > limit {
-        return Err(too_long());
-    }
-    Ok(bytes)
+    options.open(path)
 }
 
 #[cfg(test)]
@@ -93,5 +124,24 @@ mod tests {
             let device = read_file(Path::new("/dev/zero"), 10).unwrap_err().to_string();
             assert!(device.contains("no regular file"), "{device}");
         }
+        #[cfg(target_os = "linux")]
+        {
+            // Calls itself a regular file, and would wait for the kernel's next message.
+            let log = read_file(Path::new("/proc/kmsg"), 10).unwrap_err().to_string();
+            assert!(log.starts_with("/proc/kmsg: "), "{log}");
+        }
+    }
+
+    #[test]
+    fn a_file_that_changes_under_the_reader_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.obj");
+        std::fs::write(&path, "v 0 0 0").unwrap();
+        let before = std::fs::metadata(&path).unwrap();
+        assert!(check_unchanged(&path, &before, &before).is_ok(), "nothing changed");
+        std::fs::write(&path, "v 0 0").unwrap();
+        let after = std::fs::metadata(&path).unwrap();
+        let error = check_unchanged(&path, &before, &after).unwrap_err().to_string();
+        assert!(error.contains("a.obj: was changed while"), "{error}");
     }
 }

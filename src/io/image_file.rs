@@ -9,7 +9,8 @@ mod jpeg;
 mod png;
 
 use crate::color::linear_from_srgb;
-use crate::io::excerpt;
+use crate::io::memory::NoMemory;
+use crate::io::{excerpt, memory};
 use crate::scene::image::Image;
 
 /// Pixels that a picture may have along each side.
@@ -44,6 +45,17 @@ pub enum ImageFileError {
         height: u32,
     },
 
+    /// The machine cannot hold its pixels.
+    #[error("{width} x {height} pixels: decoding it {error}")]
+    NoMemory {
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
+        /// How much is needed, and how much there is.
+        error: NoMemory,
+    },
+
     /// A JPEG with other colours than grey, RGB or YCbCr.
     #[error("JPEG in {colors} colours, which are not read; save it as RGB")]
     UnsupportedColors {
@@ -76,13 +88,15 @@ pub fn decode(bytes: &[u8]) -> Result<Image, ImageFileError> {
     Err(ImageFileError::UnknownFormat { start })
 }
 
-/// Refuses a header whose pixels would take more than the documented memory.
-fn check_size(width: u32, height: u32) -> Result<(), ImageFileError> {
+/// Refuses a header whose pixels would take more than the documented memory, or more than there
+/// is; a decoded pixel of the file has so many bytes.
+fn check_size(width: u32, height: u32, pixel_bytes: usize) -> Result<(), ImageFileError> {
     let n_texels = u64::from(width) * u64::from(height);
     if MAX_SIDE < width.max(height) || MAX_TEXELS < n_texels {
         return Err(ImageFileError::TooLarge { width, height });
     }
-    Ok(())
+    memory::check(n_texels * (pixel_bytes + size_of::<[f32; 3]>()) as u64)
+        .map_err(|error| ImageFileError::NoMemory { width, height, error })
 }
 
 /// Linear light of each sRGB code from 0 to `max_code`.

@@ -10,10 +10,17 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use crate::io::excerpt;
+use crate::io::scene_file::{LARGEST, LARGEST_LIGHT, SMALLEST};
 use crate::scene::description::{ColorOrTexture, MaterialDescription, Triple};
 
 /// Warnings about one library; a file of another kind would have one a line.
 const MAX_WARNINGS: usize = 10;
+
+/// Bytes of all libraries of one mesh: room for a hundred thousand materials.
+const LARGEST_LIBRARIES: usize = 8 << 20;
+
+/// Largest `Ns`: the roughness that it stands for is still one of a scene file.
+const LARGEST_EXPONENT: f64 = 1e24;
 
 /// One material of a library.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,12 +43,20 @@ pub fn materials_of_slots(
     mut read: impl FnMut(&Path) -> Result<Vec<u8>, String>,
 ) -> (Vec<Option<MtlMaterial>>, Vec<String>) {
     let mut warnings = Vec::new();
+    let mut n_bytes = 0;
     let mut known: HashMap<String, MtlMaterial> = HashMap::new();
     for library in libraries {
         let path = portable_path(library);
         let label = excerpt(library.as_bytes());
         match read(&path) {
+            Ok(bytes) if LARGEST_LIBRARIES < n_bytes + bytes.len() => {
+                let limit = LARGEST_LIBRARIES >> 20;
+                warnings.push(format!(
+                    "material library {label}: passed over; libraries of {limit} MiB in all are read"
+                ));
+            }
             Ok(bytes) => {
+                n_bytes += bytes.len();
                 let (materials, told) = parse(&bytes);
                 warnings.extend(told.into_iter().map(|warning| format!("{label}: {warning}")));
                 for material in materials {
@@ -131,16 +146,16 @@ fn translate(material: tobj::Material, warnings: &mut Vec<String>) -> MtlMateria
     description.diffuse = ColorOrTexture::Color(diffuse.map(|channel| opacity * channel));
     description.specular = range.clamp_color("Ks", material.specular.unwrap_or_default(), 1.0);
     description.emission =
-        range.clamp_color("Ke", material.emissive.unwrap_or_default(), f64::INFINITY);
+        range.clamp_color("Ke", material.emissive.unwrap_or_default(), LARGEST_LIGHT);
     description.transmission = [1.0 - opacity; 3];
     if let Some(ns) = material.shininess {
         // The slope at which Ward's lobe falls as Blinn's does near its peak.
-        let exponent = range.clamp("Ns", decimal(ns), 0.0, f64::INFINITY);
+        let exponent = range.clamp("Ns", decimal(ns), 0.0, LARGEST_EXPONENT);
         let alpha = (2.0 / (exponent + 2.0)).sqrt();
         (description.alpha_x, description.alpha_y) = (alpha, alpha);
     }
     match material.optical_density.map(decimal) {
-        Some(ior) if 0.0 < ior => description.ior = ior,
+        Some(ior) if 0.0 < ior => description.ior = range.clamp("Ni", ior, SMALLEST, LARGEST),
         Some(ior) => {
             let default = description.ior;
             range.tell(format!("Ni {ior} is not above 0; {default} is used"));
@@ -182,6 +197,7 @@ fn decimal(value: f32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::io::scene_file::{parse as parse_scene, validate};
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
 
@@ -321,6 +337,32 @@ mod tests {
                 prop_assert!(0.0 < m.alpha_x && m.alpha_x <= 1.0);
                 prop_assert!(0.0 < m.ior && m.ior.is_finite());
             }
+        }
+    }
+
+    #[test]
+    fn endless_libraries_are_passed_over_with_a_warning() {
+        let slots = [Some("m".to_owned())];
+        let libraries = ["long.mtl".to_owned(), "short.mtl".to_owned()];
+        let (materials, warnings) = materials_of_slots(&slots, &libraries, |path| {
+            let is_long = path == Path::new("long.mtl");
+            let end = if is_long { "\n".repeat(LARGEST_LIBRARIES) } else { String::new() };
+            Ok(format!("newmtl m\nNs {}{end}", u8::from(is_long)).into_bytes())
+        });
+        let material = materials[0].as_ref().expect("the short one has it");
+        assert_eq!(material.description.alpha_x, 1.0, "of the short one");
+        assert!(warnings.len() == 1 && warnings[0].contains("long.mtl"), "{warnings:?}");
+    }
+
+    #[test]
+    fn every_material_could_stand_in_a_scene_file() {
+        for line in ["Ke 1 1.2e30 2", "Ns 3e38", "Ni 1e-30", "Ni 3e38", "Kd 2 -1 0"] {
+            let (material, warnings) = one(line);
+            let mut scene =
+                parse_scene("camera = { eye = [0, 0, 1], target = [0, 0, 0] }", &[]).unwrap();
+            scene.materials.push(material.description);
+            assert_eq!(validate(&scene), Ok(()), "{line}");
+            assert!(warnings.iter().any(|warning| warning.contains("out of range")), "{line}");
         }
     }
 }

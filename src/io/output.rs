@@ -138,8 +138,25 @@ pub fn create_file(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     Ok(())
 }
 
+/// Finds out whether a file could be written there, by making a temporary one beside it.
+///
+/// # Errors
+/// When the name is a folder's, or its folder is not there or not writable.
+pub fn check_writable(path: &Path) -> Result<(), WriteError> {
+    let is_folder = path.is_dir() || path.as_os_str().as_encoded_bytes().ends_with(b"/");
+    if is_folder {
+        return Err(WriteError::new(path, "this is the name of a folder"));
+    }
+    let folder = folder_of(path);
+    if !folder.exists() {
+        let reason = format!("there is no folder {}; make it first", printable_path(folder));
+        return Err(WriteError::new(path, reason));
+    }
+    let file = write_temporary(path, &[])?;
+    file.close().map_err(|error| WriteError::new(path, error))
+}
+
 fn write_temporary(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile, WriteError> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let mut builder = tempfile::Builder::new();
     builder.prefix(".penumbra-");
     #[cfg(unix)]
@@ -149,8 +166,8 @@ fn write_temporary(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile,
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     let file = builder
-        .tempfile_in(folder.unwrap_or(Path::new(".")))
-        .map_err(|error| WriteError::new(path, error))?;
+        .tempfile_in(folder_of(path))
+        .map_err(|error| WriteError::new(path, plain(&error)))?;
     let mut writer = BufWriter::new(file);
     let written = writer.write_all(bytes).and_then(|()| writer.flush());
     written.map_err(|error| WriteError::new(path, error))?;
@@ -159,11 +176,22 @@ fn write_temporary(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile,
     Ok(file)
 }
 
+/// What the system said, without the name of the temporary file: nobody knows that one.
+fn plain(error: &io::Error) -> String {
+    let text = error.to_string();
+    text.split_once(" at path ").map_or_else(|| text.clone(), |(reason, _)| reason.to_owned())
+}
+
+/// The folder that a file is in, or is to be in.
+fn folder_of(path: &Path) -> &Path {
+    let parent = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    parent.unwrap_or(Path::new("."))
+}
+
 /// Makes the new name last through a power cut, where the system can; the file itself is whole
 /// either way.
 fn sync_folder(path: &Path) {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    if let Ok(folder) = File::open(folder.unwrap_or(Path::new("."))) {
+    if let Ok(folder) = File::open(folder_of(path)) {
         drop(folder.sync_all());
     }
 }

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::io::folder::{FileRecord, Folder};
 use crate::io::output::TextChunk;
+use crate::io::printable_ends;
 use crate::io::scene_file;
 use crate::scene::description::SceneDescription;
 
@@ -60,7 +61,7 @@ pub struct Snapshot {
 #[derive(Debug, thiserror::Error)]
 pub enum SnapshotError {
     /// No PNG at all.
-    #[error("is not a readable PNG: {0}")]
+    #[error("is not a readable PNG: {}", printable_ends(&.0.to_string()))]
     Png(#[from] png::DecodingError),
     /// A PNG without a scene.
     #[error("carries no scene; only pictures saved by penumbra do")]
@@ -78,7 +79,7 @@ pub enum SnapshotError {
         height: u32,
     },
     /// The record is damaged.
-    #[error("carries a damaged record: {0}")]
+    #[error("carries a damaged record: {}", printable_ends(.0))]
     Record(String),
 }
 

@@ -57,8 +57,10 @@ impl<'a> Reading<'a> {
                 |message| AssetFailure::Broken { section: Section::Objects, index, message };
             let bytes = self.read(&key.file).map_err(|error| broken(error.to_string()))?;
             let label = excerpt(key.file.as_bytes());
-            let asset =
-                self.mesh_of(&key, &bytes).map_err(|error| broken(format!("{label}: {error}")))?;
+            let asset = self.mesh_of(&key, &bytes).map_err(|error| match error {
+                ObjError::Cancelled => AssetFailure::Cancelled,
+                error => broken(format!("{label}: {error}")),
+            })?;
             if let Some(lost) = self.lost.take() {
                 return Err(broken(lost.to_string()));
             }
@@ -118,7 +120,8 @@ impl<'a> Reading<'a> {
 
     /// The mesh with its libraries' materials; whatever is wrong with those is reported only.
     pub(super) fn mesh_of(&mut self, key: &MeshKey, bytes: &[u8]) -> Result<MeshAsset, ObjError> {
-        let (mesh, notes) = obj::load_mesh(bytes, key.normals, key.crease_angle_deg())?;
+        let (mesh, notes) =
+            obj::load_mesh(bytes, key.normals, key.crease_angle_deg(), self.is_cancelled)?;
         let label = excerpt(key.file.as_bytes());
         let beside = Path::new(&key.file).parent().unwrap_or(Path::new("")).to_owned();
         let named = |path: &Path| beside.join(path).to_string_lossy().into_owned();

@@ -40,28 +40,48 @@ impl Transform {
     }
 
     /// A point of the object in the world.
+    #[inline]
     pub fn world_from_object_point(&self, p: DVec3) -> DVec3 {
+        if self.is_identity {
+            return p;
+        }
         self.linear * p + self.translation
     }
 
     /// A direction of the object in the world; not normalised.
+    #[inline]
     pub fn world_from_object_vector(&self, v: DVec3) -> DVec3 {
+        if self.is_identity {
+            return v;
+        }
         self.linear * v
     }
 
     /// A normal of the object in the world: by the inverse transpose; not normalised.
+    #[inline]
     pub fn world_from_object_normal(&self, n: DVec3) -> DVec3 {
+        if self.is_identity {
+            return n;
+        }
         self.inverse.transpose() * n
     }
 
     /// A point of the world as the object sees it.
+    #[inline]
     pub fn object_from_world_point(&self, p: DVec3) -> DVec3 {
+        if self.is_identity {
+            return p;
+        }
         self.inverse * (p - self.translation)
     }
 
     /// A direction of the world as the object sees it; not normalised, so that distances along a
     /// ray keep their parameter.
+    #[inline]
     pub fn object_from_world_vector(&self, v: DVec3) -> DVec3 {
+        if self.is_identity {
+            return v;
+        }
         self.inverse * v
     }
 

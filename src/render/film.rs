@@ -29,6 +29,11 @@ pub struct FilmTooLarge {
 }
 
 impl Film {
+    /// Bytes a pixel while a picture is made: these sums, those of the pass on its way, and one
+    /// picture in `f32`.
+    pub(super) const BYTES_A_PIXEL: u64 =
+        (2 * size_of::<PixelSums>() + size_of::<[f32; 3]>()) as u64;
+
     /// A black film.
     ///
     /// # Errors

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::geometry::AcceleratorKind;
+use crate::geometry::{AcceleratorKind, Shape, TracedMesh};
 use crate::math::sampler::Sampler;
+use crate::render::film::Film;
 use crate::scene::Scene;
 use crate::scene::description::{IntegratorKind, RenderDescription, SamplerKind};
 
@@ -49,6 +50,29 @@ impl RenderSettings {
 }
 
 impl RenderJob {
+    /// Bytes that its picture takes while it is rendered: the film, the sums of a pass on their
+    /// way, and what is made of them to be shown or written.
+    pub fn picture_bytes(&self) -> u64 {
+        u64::from(self.width) * u64::from(self.height) * Film::BYTES_A_PIXEL
+    }
+
+    /// The trees that are to be built for it: over how many triangles, and how many bytes that
+    /// takes at most while it goes on.
+    pub fn unbuilt_trees(&self) -> (usize, u64) {
+        let kind = self.settings.accelerator;
+        let mut meshes: Vec<&Arc<TracedMesh>> = Vec::new();
+        for object in &self.scene.objects {
+            if let Shape::Mesh(mesh) = object.instance.shape()
+                && !mesh.has_tree(kind)
+                && !meshes.iter().any(|known| Arc::ptr_eq(known, mesh))
+            {
+                meshes.push(mesh);
+            }
+        }
+        let n_triangles = meshes.iter().map(|mesh| mesh.mesh.triangles.len()).sum();
+        (n_triangles, n_triangles as u64 * kind.bytes_a_triangle())
+    }
+
     /// The same view in a picture smaller by `scale` (at least 1), rounded up.
     pub fn coarse(&self, scale: u32) -> Self {
         Self {

@@ -3,9 +3,11 @@
 use glam::Vec3;
 
 use crate::brdf::Glossy;
+use crate::color::Rgb;
 use crate::geometry::{Hit, Surface};
 use crate::math::{Frame, Ray};
 use crate::render::world::World;
+use crate::scene::description::IntegratorKind;
 use crate::scene::material::{ColorSource, Material};
 use crate::scene::texture::Lookup;
 
@@ -55,8 +57,14 @@ impl<'a> Shading<'a> {
         let normal = if is_outside { surface.normal } else { -surface.normal };
         let shading_normal =
             if shading_normal.dot(normal) < 0.0 { -shading_normal } else { shading_normal };
-        let tangent = transform.world_direction(material.tangent, Vec3::X);
-        let frame = Frame::from_normal_tangent(shading_normal, tangent);
+        // Only a glossy lobe and scattered directions ask where the tangents point.
+        let scatters = world.job.settings.integrator == IntegratorKind::Path;
+        let frame = if scatters || material.specular != Rgb::ZERO {
+            let tangent = transform.world_direction(material.tangent, Vec3::X);
+            Frame::from_normal_tangent(shading_normal, tangent)
+        } else {
+            Frame::from_normal(shading_normal)
+        };
         let color = |source: &ColorSource| match source.texture {
             Some(id) => source.color * scene.textures[id as usize].eval(&lookup),
             None => source.color,

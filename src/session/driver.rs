@@ -5,7 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use crate::io::{crash, printable_path};
 use crate::render::{Film, PassStatistics, RenderJob, plan};
+use crate::session::admit::admit;
 use crate::session::{Frame, Goal, Phase, Renderer, Shared, lock};
 use crate::threads;
 
@@ -96,6 +98,7 @@ impl<R: Renderer> Driver<'_, R> {
             }
             if let Some(job) = orders.mailbox.take() {
                 self.shared.stop_refining.store(false, Ordering::Relaxed);
+                self.shared.stop_preview.store(false, Ordering::Relaxed);
                 return Next::Begin(orders.generation, job);
             }
             let phase = match work.as_deref() {
@@ -156,7 +159,9 @@ impl<R: Renderer> Driver<'_, R> {
             Ok(value) => Some(value),
             Err(panic) => {
                 let text = threads::panic_text(&*panic);
-                self.set_phase(Phase::Failed(format!("the renderer failed: {text}")));
+                let report = crash::newest_report()
+                    .map_or(String::new(), |path| format!("; see {}", printable_path(&path)));
+                self.set_phase(Phase::Failed(format!("the renderer failed: {text}{report}")));
                 None
             }
         }
@@ -175,6 +180,10 @@ impl<R: Renderer> Driver<'_, R> {
             status.noise_percent = None;
             status.n_invalid = 0;
         });
+        if let Err(error) = admit(&job) {
+            self.set_phase(Phase::Failed(error.to_string()));
+            return None;
+        }
         let world = Arc::new(self.renderer.prepare(&job));
         *lock(self.world) = Some(Arc::clone(&world));
         let trees = self.renderer.trees(&world);
@@ -203,12 +212,12 @@ impl<R: Renderer> Driver<'_, R> {
         Some(work)
     }
 
-    /// The coarse picture, which only closing stops; then finer ones while a full pass is far away,
+    /// The coarse picture, which only closing and another scene stop; then finer ones while a full pass is far away,
     /// which give way to a newer job.
     fn preview(&mut self, work: &mut Work<R::World>) {
         let n_pixels = u64::from(work.job.width) * u64::from(work.job.height);
         let mut scale = plan::preview_scale(n_pixels, self.rate, PREVIEW_SECS);
-        let mut stop = &self.shared.stop_all;
+        let mut stop = &self.shared.stop_preview;
         if scale == 1 {
             // So fast that the first sample is the preview: it is not stopped by an edit either.
             return self.refine(work, stop);

@@ -2,7 +2,7 @@
 
 use super::app::App;
 use super::compare::{CompareChoice, Pinned};
-use super::dialogs::{Purpose, UnsavedAnswer, unsaved_question};
+use super::dialogs::{Purpose, UnsavedAnswer, picture_question, unsaved_question};
 use super::export_dialog::{ExportChoice, ExportFacts, export_ui};
 use super::files::Pending;
 use super::help::{HelpChoice, help_ui};
@@ -128,7 +128,7 @@ impl App {
 
     /// Shows the box that renders a picture, where it is wanted, and does what is chosen in it.
     pub(super) fn export_box(&mut self, ctx: &egui::Context) {
-        if !self.interface.export_shown {
+        if !self.interface.export_shown || self.interface.start_shown {
             return;
         }
         let facts = ExportFacts {
@@ -190,7 +190,8 @@ impl App {
     /// Keeps the window open while there are edits to ask about.
     pub(super) fn guard_close(&mut self, ctx: &egui::Context) {
         let asked = ctx.input(|input| input.viewport().close_requested());
-        if asked && self.document.is_dirty() && !self.files.close_confirmed {
+        let is_at_work = self.document.is_dirty() || self.exporter.progress().is_some();
+        if asked && is_at_work && !self.files.close_confirmed {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.files.pending = Some(Pending::Close);
         }
@@ -199,6 +200,10 @@ impl App {
     /// Asks about unsaved edits where something waits for the answer.
     pub(super) fn ask_about_unsaved(&mut self, ctx: &egui::Context) {
         if self.files.pending.is_none() || self.files.is_saving_first {
+            return;
+        }
+        if !self.document.is_dirty() {
+            self.ask_about_picture(ctx);
             return;
         }
         match unsaved_question(ctx, &self.files.title) {
@@ -212,6 +217,20 @@ impl App {
         }
     }
 
+    /// Asks what to do with a picture that closing the window would stop.
+    fn ask_about_picture(&mut self, ctx: &egui::Context) {
+        let is_closing = self.files.pending == Some(Pending::Close);
+        if !is_closing || self.exporter.progress().is_none() {
+            return self.go_on(ctx);
+        }
+        match picture_question(ctx) {
+            None => {}
+            Some(true) => self.go_on(ctx),
+            Some(false) => self.files.pending = None,
+        }
+    }
+
+    /// Does what waited for an answer.
     pub(super) fn go_on(&mut self, ctx: &egui::Context) {
         self.files.is_saving_first = false;
         match self.files.pending.take() {

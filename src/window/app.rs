@@ -11,6 +11,7 @@ use super::keys_file;
 use super::picture::PictureDisplay;
 use super::probe::Probe;
 use super::recovery::Recovery;
+use super::settings::Settings;
 use super::start::Thumbnails;
 use super::state::{InterfaceState, Remembered};
 use super::swatches::Swatches;
@@ -32,6 +33,7 @@ use std::sync::Arc;
 pub(super) struct App {
     pub(super) document: Document,
     pub(super) interface: InterfaceState,
+    settings: Settings,
     pub(super) files: FileWork,
     pub(super) work: RenderWork,
     pub(super) dialogs: PathDialogs,
@@ -89,9 +91,6 @@ impl App {
             let ctx = ctx.clone();
             move || ctx.request_repaint()
         };
-        // One processor is left to the window itself.
-        let n_threads = threads::available().saturating_sub(1).max(1);
-        let session = Session::new(n_threads, wake())?;
         let mut files = FileWork::new(Loader::new(wake())?);
         files.open(first);
         let empty = empty_scene();
@@ -101,12 +100,15 @@ impl App {
         if let (false, Some(path)) = (complaints.is_empty(), &keys_file) {
             toasts.fail(format!("{}\n{}", path.display(), complaints.join("\n")));
         }
+        let settings = Settings::new(own_folder.as_deref(), remembered.clone());
         let interface = remembered.restore();
+        let session = Session::new(interface.n_threads(), wake())?;
         ctx.set_theme(interface.theme);
         Ok(Self {
             home_camera: empty.camera.clone(),
             document: Document::new(empty, None),
             interface,
+            settings,
             files,
             work: RenderWork::new(session),
             dialogs: PathDialogs::default(),
@@ -155,6 +157,28 @@ impl App {
         self.document.checkpoint(label, Some(self.gesture.id()));
     }
 
+    /// Gives the renderer as many threads as are chosen. The old one ends on a thread of its own, so
+    /// that the window does not wait for it.
+    fn fit_threads(&mut self, ctx: &egui::Context) {
+        let n_threads = self.interface.n_threads();
+        if n_threads == self.work.session.status().n_threads {
+            return;
+        }
+        let wake = ctx.clone();
+        match Session::new(n_threads, move || wake.request_repaint()) {
+            Ok(session) => {
+                let old = std::mem::replace(&mut self.work.session, session);
+                if threads::spawn("retire", move || drop(old)).is_err() {
+                    self.toasts.fail("the system has no thread left");
+                }
+            }
+            Err(error) => {
+                self.interface.n_threads = Some(self.work.session.status().n_threads);
+                self.toasts.fail(format!("cannot change the number of threads: {error}"));
+            }
+        }
+    }
+
     /// The bytes on show.
     pub(super) fn picture_on_show(&self) -> Option<&Arc<egui::ColorImage>> {
         self.picture.image()
@@ -163,6 +187,7 @@ impl App {
     /// Takes over what changed in `scene`, makes it the job, and shows the newest picture.
     fn render(&mut self, ctx: &egui::Context, scene: SceneDescription) {
         self.take_edit(scene);
+        self.fit_threads(ctx);
         if self.files.has_scene {
             let description = &self.document.description;
             let submitted = self.work.submit(description, &self.interface, self.viewport.size);
@@ -230,8 +255,8 @@ impl eframe::App for App {
         self.recovery.forget();
     }
 
-    fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        eframe::set_value(storage, Remembered::KEY, &Remembered::of(&self.interface));
+    fn save(&mut self, _storage: &mut dyn eframe::Storage) {
+        self.settings.keep(&Remembered::of(&self.interface));
     }
 }
 

@@ -131,6 +131,7 @@ impl App {
         self.interface.forget_scene();
         self.pinned = None;
         self.awaited_click = None;
+        self.work.session.abandon();
         self.work.set_assets(Arc::new(assets));
         self.document = Document::new(description, self.files.scene_path.clone());
         self.gesture.next();

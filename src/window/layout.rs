@@ -12,6 +12,7 @@ use super::work::picture_size;
 use crate::geometry::{AcceleratorKind, TreeStatistics};
 use crate::scene::description::SceneDescription;
 use crate::session::{Frame, Phase};
+use crate::threads;
 use egui::{Margin, Panel, Ui};
 
 impl App {
@@ -105,9 +106,11 @@ impl App {
 
     fn panel_ui(&mut self, ui: &mut Ui, scene: &mut SceneDescription) {
         let status = self.work.session.status();
+        let mut n_threads = self.interface.n_threads();
         let interface = &mut self.interface;
         let (swatches, assets) = (&mut self.swatches, &self.work.assets);
         let facts = RenderFacts {
+            n_processors: threads::available(),
             accelerators: &AcceleratorKind::ALL.map(AcceleratorKind::name),
             tree: tree_lines(status.trees.as_ref()),
             convergence: Convergence {
@@ -119,8 +122,12 @@ impl App {
         let summary = format!("{} samples", scene.render.samples);
         panels::section(ui, "Render", &summary, false, |ui| {
             let (size, accelerator) = (&mut interface.size_mode, &mut interface.accelerator);
-            let limits = &mut interface.limits;
-            panels::render_ui(ui, &mut scene.render, size, accelerator, limits, &facts);
+            let (limits, before) = (&mut interface.limits, n_threads);
+            let render = &mut scene.render;
+            panels::render_ui(ui, render, size, accelerator, &mut n_threads, limits, &facts);
+            if n_threads != before {
+                interface.n_threads = Some(n_threads);
+            }
         });
         panels::section(ui, "Camera & lens", "", true, |ui| {
             let (unit, picking) = (&mut interface.scene_unit_mm, &mut interface.picking);
@@ -247,6 +254,10 @@ fn tree_lines(tree: Option<&TreeStatistics>) -> Vec<(&'static str, String)> {
     vec![
         ("Built in", format!("{:.0} ms", tree.build_secs * 1e3)),
         ("Nodes", tree.n_nodes.to_string()),
-        ("Memory", format!("{:.1} MB", tree.n_bytes as f64 / 1e6)),
+        ("Memory", bytes_text(tree.n_bytes as f64)),
     ]
+}
+
+fn bytes_text(bytes: f64) -> String {
+    if bytes < 1e6 { format!("{:.0} kB", bytes / 1e3) } else { format!("{:.1} MB", bytes / 1e6) }
 }

@@ -31,6 +31,7 @@ mod presets;
 mod probe;
 mod recovery;
 mod relocate;
+mod settings;
 mod start;
 mod state;
 mod status;
@@ -70,6 +71,12 @@ pub enum WindowError {
     },
 }
 
+/// Where the program keeps what it remembers from one run to the next; `None` where the system has
+/// no such place.
+pub fn own_folder() -> Option<PathBuf> {
+    eframe::storage_dir(APP_ID)
+}
+
 /// Opens the window on a scene, a mesh or a snapshot, or on the gallery's final scene, and stays
 /// until it is closed.
 ///
@@ -91,11 +98,9 @@ pub fn run(file: Option<PathBuf>) -> Result<(), WindowError> {
     };
     let create: eframe::AppCreator<'_> = Box::new(move |cc| {
         theme::install(&cc.egui_ctx);
-        let remembered = cc
-            .storage
-            .and_then(|storage| eframe::get_value(storage, state::Remembered::KEY))
-            .unwrap_or_default();
-        Ok(Box::new(app::App::new(&cc.egui_ctx, remembered, first, eframe::storage_dir(APP_ID))?))
+        let own = own_folder();
+        let remembered = settings::load(own.as_deref());
+        Ok(Box::new(app::App::new(&cc.egui_ctx, remembered, first, own)?))
     });
     eframe::run_native(APP_ID, options, create).map_err(|error| match error {
         eframe::Error::WinitEventLoop(_) => WindowError::NoDisplay,

@@ -8,17 +8,23 @@ use crate::io::snapshot;
 use crate::loader::Source;
 use crate::scene::description::SceneDescription;
 use egui::{Align2, Id, RichText, Vec2};
-use std::path::PathBuf;
+use std::fs::File;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Seconds between two copies.
 const PERIOD_SECS: f64 = 15.0;
+
+/// Windows that keep copies beside one another.
+const MOST_WINDOWS: u32 = 32;
 
 /// The copy on disk, and what this window knows of it.
 #[derive(Debug, Default)]
 pub(super) struct Recovery {
     /// Where it is kept; `None` where there is no such place.
     path: Option<PathBuf>,
+    /// Locked while this window lives, so that no other takes its copy for one left behind.
+    _lock: Option<File>,
     /// Whether one from an earlier, crashed window is there.
     offered: bool,
     /// Whether this window has written one.
@@ -29,11 +35,16 @@ pub(super) struct Recovery {
 }
 
 impl Recovery {
-    /// Looks whether a copy was left behind in that folder.
+    /// Looks whether a window that is gone left a copy behind in that folder.
     pub(super) fn new(folder: Option<PathBuf>) -> Self {
-        let path = folder.map(|folder| folder.join("recovery.png"));
-        let offered = path.as_ref().is_some_and(|path| path.is_file());
-        Self { path, offered, written: false, last_time: 0.0, copied: None }
+        let Some(folder) = folder else { return Self::default() };
+        let copy = |number: &u32| folder.join(format!("recovery-{number}.png"));
+        let left_behind = (1..=MOST_WINDOWS).filter(|number| copy(number).is_file());
+        let place = |number| Some((copy(&number), lock_of(&folder, number)?));
+        let found = left_behind.into_iter().find_map(place);
+        let offered = found.is_some();
+        let (path, lock) = found.or_else(|| (1..=MOST_WINDOWS).find_map(place)).unzip();
+        Self { path, _lock: lock, offered, ..Self::default() }
     }
 
     /// Removes the copy: everything is saved, or let go on purpose.
@@ -45,6 +56,15 @@ impl Recovery {
         self.written = false;
         self.copied = None;
     }
+}
+
+/// The lock of a copy; `None` while a living window has it.
+fn lock_of(folder: &Path, number: u32) -> Option<File> {
+    // Where the folder cannot be made, neither can the lock.
+    let _ = std::fs::create_dir_all(folder);
+    let path = folder.join(format!("recovery-{number}.lock"));
+    let lock = File::options().create(true).truncate(false).write(true).open(path).ok()?;
+    lock.try_lock().is_ok().then_some(lock)
 }
 
 impl App {
@@ -127,5 +147,25 @@ impl App {
                 self.recovery.forget();
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn windows_do_not_take_the_copies_of_others_that_live() {
+        let folder = tempfile::tempdir().unwrap();
+        let own = || Some(folder.path().join("own"));
+        let first = Recovery::new(own());
+        std::fs::write(first.path.as_ref().unwrap(), "a copy").unwrap();
+        let second = Recovery::new(own());
+        assert!(!second.offered, "the copy of a living window is offered");
+        assert_ne!(first.path, second.path, "two windows share one place");
+        let left_behind = first.path.clone();
+        drop(first);
+        let third = Recovery::new(own());
+        assert!(third.offered && third.path == left_behind, "the copy left behind is not found");
     }
 }

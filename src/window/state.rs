@@ -3,6 +3,7 @@
 use super::export::ExportSettings;
 use super::navigation::Navigation;
 use super::panels::{DisplayState, Limits, PickFor, Selection, SizeMode};
+use crate::threads;
 use egui::ThemePreference;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -49,6 +50,8 @@ pub(super) struct InterfaceState {
     pub(super) export_shown: bool,
     /// What is set in that box.
     pub(super) export: ExportSettings,
+    /// Threads that render; `None` leaves one processor to the window itself.
+    pub(super) n_threads: Option<usize>,
     /// Dark, light, or as the system.
     pub(super) theme: ThemePreference,
     /// Width of the panel in points.
@@ -75,6 +78,7 @@ impl Default for InterfaceState {
             start_shown: false,
             export_shown: false,
             export: ExportSettings::default(),
+            n_threads: None,
             theme: ThemePreference::System,
             panel_width: PANEL_WIDTH,
         }
@@ -90,6 +94,7 @@ pub(super) struct Remembered {
     scene_unit_mm: f64,
     recent: Vec<PathBuf>,
     export: ExportSettings,
+    n_threads: Option<usize>,
     theme: ThemePreference,
     panel_width: f32,
 }
@@ -101,17 +106,16 @@ impl Default for Remembered {
 }
 
 impl Remembered {
-    /// Where it is kept in the program's storage.
-    pub(super) const KEY: &'static str = "penumbra";
-
     /// What of this state is kept.
     pub(super) fn of(state: &InterfaceState) -> Self {
         Self {
             panel_shown: state.panel_shown,
             fixed_size: state.size_mode == SizeMode::Fixed,
             scene_unit_mm: state.scene_unit_mm,
-            recent: state.recent.clone(),
+            // A name that is no text cannot be written down.
+            recent: state.recent.iter().filter(|path| path.to_str().is_some()).cloned().collect(),
             export: state.export.clone(),
+            n_threads: state.n_threads,
             theme: state.theme,
             panel_width: state.panel_width,
         }
@@ -125,6 +129,7 @@ impl Remembered {
             scene_unit_mm: self.scene_unit_mm,
             recent: self.recent,
             export: self.export,
+            n_threads: self.n_threads.map(|n| n.clamp(1, threads::available())),
             theme: self.theme,
             panel_width: self.panel_width,
             ..InterfaceState::default()
@@ -133,6 +138,11 @@ impl Remembered {
 }
 
 impl InterfaceState {
+    /// Threads that render: as chosen, or all processors but one.
+    pub(super) fn n_threads(&self) -> usize {
+        self.n_threads.unwrap_or_else(|| threads::available().saturating_sub(1).max(1))
+    }
+
     /// Forgets what belongs to the scene that was open.
     pub(super) fn forget_scene(&mut self) {
         self.selection = Selection::default();

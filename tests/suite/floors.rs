@@ -38,6 +38,27 @@ fn modules_use_only_lower_floors_and_themselves() {
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
 
+/// Files whose registers need it; everything else does without, tests too.
+const UNSAFE: &[&str] = &["geometry/lanes", "geometry/wide_bvh/"];
+
+#[test]
+fn only_the_code_for_wide_registers_is_unsafe() {
+    let mut n_found = 0;
+    for Source { path, text } in sources() {
+        let path = path.to_str().unwrap();
+        let is_allowed = UNSAFE.iter().any(|place| path.starts_with(place));
+        for (number, line) in text.lines().enumerate() {
+            let code = line.split("//").next().unwrap_or_default();
+            if says(code, "unsafe ") || says(code, "unsafe_code") {
+                n_found += 1;
+                assert!(is_allowed, "src/{path}:{}: {line}", number + 1);
+                assert!(text.contains("// SAFETY"), "src/{path}: says nowhere why it is sound");
+            }
+        }
+    }
+    assert!(n_found > 0, "nothing unsafe is found at all");
+}
+
 #[test]
 fn every_module_of_the_crate_has_a_floor() {
     let names: Vec<String> = sources().iter().map(|source| module_of(&source.path)).collect();

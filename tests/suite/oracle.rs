@@ -2,4 +2,5 @@
 
 mod closed;
 mod invariance;
+mod memory;
 mod rays;

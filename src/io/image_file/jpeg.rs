@@ -22,7 +22,8 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageFileError> {
         return Err(damaged(format, &"it has no header"));
     };
     let (width, height) = (u32::from(info.width), u32::from(info.height));
-    check_size(width, height)?;
+    // Components of every kind that a scan may hold, and what is made of them.
+    check_size(width, height, 16)?;
     if !matches!(colors, ColorSpace::Luma | ColorSpace::RGB | ColorSpace::YCbCr) {
         return Err(ImageFileError::UnsupportedColors { colors: format!("{colors:?}") });
     }

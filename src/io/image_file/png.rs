@@ -12,7 +12,8 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageFileError> {
     decoder.set_ignore_iccp_chunk(true);
     let header = decoder.read_header_info().map_err(fail)?;
     let (width, height) = (header.width, header.height);
-    check_size(width, height)?;
+    // At most four channels of two bytes.
+    check_size(width, height, 8)?;
     // Palettes and depths below 8 bits become 8 bits a channel.
     decoder.set_transformations(png::Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(fail)?;
@@ -20,7 +21,9 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageFileError> {
     let Some(n_bytes) = reader.output_buffer_size() else {
         return Err(ImageFileError::TooLarge { width, height });
     };
-    let mut samples = vec![0; n_bytes];
+    let mut samples = Vec::new();
+    samples.try_reserve_exact(n_bytes).map_err(|error| damaged("PNG", &error))?;
+    samples.resize(n_bytes, 0);
     reader.next_frame(&mut samples).map_err(fail)?;
     // What follows the pixels tells whether the file is complete.
     reader.finish().map_err(fail)?;

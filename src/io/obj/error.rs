@@ -1,5 +1,7 @@
 //! Why a file is not a mesh.
 
+use crate::io::memory::NoMemory;
+
 /// Why a Wavefront OBJ file could not be turned into a mesh. Lines count from 1; texts taken from
 /// the file are already escaped and shortened.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -103,6 +105,19 @@ pub enum ObjError {
         /// The limit.
         limit: usize,
     },
+
+    /// More than the machine can hold.
+    #[error("line {line}: the mesh up to here {error}")]
+    NoMemory {
+        /// How far it was read.
+        line: usize,
+        /// How much is needed, and how much there is.
+        error: NoMemory,
+    },
+
+    /// Nobody wants the mesh any more.
+    #[error("cancelled")]
+    Cancelled,
 
     /// Nothing to show.
     #[error("no triangles: the file has no `f` lines{hint}")]

@@ -16,6 +16,8 @@ mod reader;
 #[cfg(test)]
 mod tests;
 
+use std::sync::atomic::AtomicBool;
+
 use glam::{Vec2, Vec3};
 
 use crate::geometry::mesh::Mesh;
@@ -65,13 +67,17 @@ pub struct MeshNotes {
 }
 
 /// Reads a whole mesh and gives it shading normals. `crease_angle_deg` is a scene's
-/// `crease_angle`: 0..=180.
+/// `crease_angle`: 0..=180. `stop` is looked at every few megabytes.
+///
+/// # Errors
+/// When it is no mesh, does not fit into memory, or is not wanted any more.
 pub fn load_mesh(
     bytes: &[u8],
     kind: NormalsKind,
     crease_angle_deg: f64,
+    stop: &AtomicBool,
 ) -> Result<(Mesh, MeshNotes), ObjError> {
-    let file = parse(bytes)?;
+    let file = parse(bytes, stop)?;
     let crease_angle = crease_angle_deg.to_radians();
     let normals = match kind {
         NormalsKind::Flat => normals::Normals::default(),
@@ -102,6 +108,9 @@ pub fn load_mesh(
 }
 
 /// Reads the text of an OBJ file.
-pub fn parse(bytes: &[u8]) -> Result<ObjFile, ObjError> {
-    Reader::new(bytes).read()
+///
+/// # Errors
+/// As [`load_mesh`].
+pub fn parse(bytes: &[u8], stop: &AtomicBool) -> Result<ObjFile, ObjError> {
+    Reader::new(bytes, stop).read()
 }

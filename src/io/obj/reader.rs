@@ -1,6 +1,7 @@
 //! The lines of an OBJ file, one after the other.
 
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::{DVec3, Vec2, Vec3};
 
@@ -8,7 +9,7 @@ use super::cursor::Cursor;
 use super::faces::Corner;
 use super::polygon::PolygonCutter;
 use super::{ObjError, ObjFile};
-use crate::io::excerpt;
+use crate::io::{excerpt, memory};
 
 /// Entries that any array of a mesh may have: indices stay far from `ABSENT`.
 const MAX_ENTRIES: usize = 1 << 30;
@@ -19,10 +20,20 @@ const MAX_LIBRARIES: usize = 100;
 /// Largest coordinate: what a tracer multiplies in `f32` stays finite.
 const MAX_COORDINATE: f32 = 1e12;
 
+/// Bytes of the file between two looks at what else goes on.
+const BETWEEN_LOOKS: usize = 4 << 20;
+
+/// Bytes a triangle that computing shading normals takes.
+const NORMALS_A_TRIANGLE: usize = 80;
+
 /// A file half read.
 pub(super) struct Reader<'a> {
     pub(super) cursor: Cursor<'a>,
     pub(super) file: ObjFile,
+    /// Whether nobody wants the mesh any more.
+    stop: &'a AtomicBool,
+    /// Where in the file `stop` and the memory are looked at next.
+    next_look: usize,
     /// Slots by the name that faces have.
     pub(super) slot_of_name: HashMap<Option<&'a [u8]>, u32>,
     /// The last `usemtl`.
@@ -42,8 +53,10 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    pub(super) fn new(bytes: &'a [u8]) -> Self {
+    pub(super) fn new(bytes: &'a [u8], stop: &'a AtomicBool) -> Self {
         Self {
+            stop,
+            next_look: BETWEEN_LOOKS,
             cursor: Cursor::new(bytes),
             file: ObjFile::default(),
             slot_of_name: HashMap::new(),
@@ -61,8 +74,33 @@ impl<'a> Reader<'a> {
     pub(super) fn read(mut self) -> Result<ObjFile, ObjError> {
         while !self.cursor.at_end_of_file() {
             self.read_line()?;
+            if self.next_look <= self.cursor.place() {
+                self.look()?;
+            }
         }
         self.finish()
+    }
+
+    /// Stops where the mesh is not wanted any more, or where it and what is made of it would not
+    /// fit into memory.
+    #[cold]
+    fn look(&mut self) -> Result<(), ObjError> {
+        self.next_look = self.cursor.place() + BETWEEN_LOOKS;
+        if self.stop.load(Ordering::Relaxed) {
+            return Err(ObjError::Cancelled);
+        }
+        let file = &self.file;
+        let used = size_of_val(&file.positions[..])
+            + size_of_val(&file.uvs[..])
+            + size_of_val(&file.normals[..])
+            + size_of_val(&file.triangles[..])
+            + size_of_val(&file.uv_ids[..])
+            + size_of_val(&file.normal_ids[..])
+            + size_of_val(&file.slots[..]);
+        // Arrays double as they grow, and shading normals are still to come.
+        let to_come = used + NORMALS_A_TRIANGLE * file.triangles.len();
+        let line = self.cursor.line();
+        memory::check(to_come as u64).map_err(|error| ObjError::NoMemory { line, error })
     }
 
     #[inline]

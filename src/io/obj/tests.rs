@@ -7,6 +7,10 @@ use proptest::test_runner::RngSeed;
 use super::*;
 use crate::geometry::mesh::ABSENT;
 
+fn parse(bytes: &[u8]) -> Result<ObjFile, ObjError> {
+    super::parse(bytes, &AtomicBool::new(false))
+}
+
 fn read(text: &str) -> ObjFile {
     parse(text.as_bytes()).unwrap_or_else(|error| panic!("{text:?}: {error}"))
 }
@@ -219,7 +223,7 @@ fn concave_polygons_are_cut_by_ears() {
 #[test]
 fn a_mesh_has_the_normals_that_were_asked_for() {
     let text = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn 1 0 0\nf 1//1 2//1 3//1\n";
-    let load = |kind| load_mesh(text.as_bytes(), kind, 180.0).unwrap();
+    let load = |kind| load_mesh(text.as_bytes(), kind, 180.0, &AtomicBool::new(false)).unwrap();
     let (mesh, notes) = load(NormalsKind::File);
     assert_eq!((mesh.normals[0], mesh.normal_ids[0]), (Vec3::X, [0; 3]));
     assert_eq!(notes.libraries, ["m.mtl"]);
@@ -376,7 +380,7 @@ proptest! {
             bytes[at] = byte;
         }
         bytes.truncate(cut.max(100));
-        if let Ok((mesh, _)) = load_mesh(&bytes, NormalsKind::File, 60.0) {
+        if let Ok((mesh, _)) = load_mesh(&bytes, NormalsKind::File, 60.0, &AtomicBool::new(false)) {
             let within = |ids: &[[u32; 3]], n: usize| {
                 ids.as_flattened().iter().all(|id| *id == ABSENT || (*id as usize) < n)
             };
@@ -386,4 +390,12 @@ proptest! {
             prop_assert!(mesh.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-6));
         }
     }
+}
+
+#[test]
+fn a_large_file_is_given_up_when_nobody_wants_it() {
+    let bytes = [TRIANGLE.as_bytes(), &vec![b'\n'; 5 << 20]].concat();
+    assert!(parse(&bytes).is_ok(), "the file is a mesh");
+    let stopped = super::parse(&bytes, &AtomicBool::new(true));
+    assert_eq!(stopped, Err(ObjError::Cancelled), "it was read to its end");
 }

@@ -20,6 +20,7 @@ pub(super) struct Bench {
     pub(super) selection: Selection,
     size_mode: SizeMode,
     accelerator: usize,
+    n_threads: usize,
     display: DisplayState,
     unit_mm: f64,
     picking: Option<PickFor>,
@@ -45,6 +46,7 @@ const DISPLAY: Panel =
     |ui, bench| display_ui(ui, &mut bench.scene.tone_mapping, &mut bench.display, None);
 const RENDER: Panel = |ui, bench| {
     let facts = RenderFacts {
+        n_processors: 4,
         accelerators: &["kd-tree", "brute-force"],
         tree: vec![("Nodes", "12".to_owned())],
         convergence: Convergence {
@@ -55,7 +57,8 @@ const RENDER: Panel = |ui, bench| {
     };
     let (size, accelerator) = (&mut bench.size_mode, &mut bench.accelerator);
     let limits = &mut bench.limits;
-    render_ui(ui, &mut bench.scene.render, size, accelerator, limits, &facts);
+    let threads = &mut bench.n_threads;
+    render_ui(ui, &mut bench.scene.render, size, accelerator, threads, limits, &facts);
 };
 pub(super) const ALL: [Panel; 7] = [CAMERA, LIGHTS, MATERIALS, TEXTURES, OBJECTS, DISPLAY, RENDER];
 
@@ -70,6 +73,7 @@ pub(super) fn bench(scene: SceneDescription) -> Bench {
         selection: Selection::default(),
         size_mode: SizeMode::Fixed,
         accelerator: 0,
+        n_threads: 1,
         display: DisplayState::default(),
         unit_mm: 100.0,
         picking: None,
@@ -324,11 +328,13 @@ fn display_and_render_follow_their_controls() {
 
     let mut rendered = harness(RENDER);
     type_figure(&mut rendered, "Samples", "1000");
-    press(&mut rendered, "Light: Path");
+    press(&mut rendered, "Integrator: Path");
     choose(&mut rendered, "Accelerator", "brute-force");
     let render = &rendered.state().scene.render;
     assert_eq!((render.samples, render.integrator), (1000, IntegratorKind::Path), "other settings");
     assert_eq!(rendered.state().accelerator, 1, "another accelerator");
+    type_figure(&mut rendered, "Threads", "3");
+    assert_eq!(rendered.state().n_threads, 3, "another number of threads");
     press(&mut rendered, "Size: Window");
     assert_eq!(rendered.state().size_mode, SizeMode::Window, "the size stays fixed");
 }

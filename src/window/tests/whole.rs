@@ -195,13 +195,13 @@ fn unsaved_edits_survive_a_crash() {
         harness.key_press(egui::Key::D);
         harness.run_steps(3);
         harness.run_steps(80);
-        wait_until(&mut harness, |_| own.join("recovery.png").is_file());
+        wait_until(&mut harness, |_| own.join("recovery-1.png").is_file());
         harness.state().document.description.clone()
     };
     let mut harness = window_with(&path, [1024.0, 700.0], Some(own));
     assert_ne!(harness.state().document.description, edited, "the file was saved");
     harness.get_by_role_and_label(Role::Button, "Restore it").click();
-    wait_until(&mut harness, |app| app.files.title == "recovery");
+    wait_until(&mut harness, |app| app.files.title == "recovery-1");
     let restored = &harness.state().document.description;
     assert_eq!(*restored, edited, "the edits were lost");
 }
@@ -311,4 +311,18 @@ fn keys_come_from_the_file_and_what_is_wrong_in_it_is_told() {
         let radius = harness.state().document.description.camera.aperture_radius;
         assert_eq!(radius == 0.0, closes, "{key:?} leaves the lens at {radius}");
     }
+}
+
+#[test]
+fn another_number_of_threads_takes_over_the_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&scene_file(folder.path()), [1024.0, 700.0]);
+    wait_until(&mut harness, |app| app.work.session.latest().is_some_and(|f| f.samples == 4));
+    let n_before = harness.state().work.session.status().n_threads;
+    harness.state_mut().interface.n_threads = Some(n_before + 1);
+    wait_until(&mut harness, |app| {
+        let is_new = app.work.session.status().n_threads == n_before + 1;
+        is_new && app.work.session.latest().is_some_and(|frame| frame.samples == 4)
+    });
+    assert!(harness.state().picture_on_show().is_some(), "the picture is gone");
 }

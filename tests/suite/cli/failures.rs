@@ -99,12 +99,12 @@ fn anything_else_is_status_1_and_says_where() {
 }
 
 #[test]
-fn outputs_that_cannot_be_written_are_named_before_or_after() {
+fn outputs_that_cannot_be_written_are_named_before_anything_is_read() {
     let place = Place::with_ball();
     place.write("folder.png/inside", b"");
     place.write("file", b"");
     for out in ["nowhere/a.png", "folder.png", "file/a.png", "/proc/a.png"] {
-        let error = place.fails(1, &["render", "ball.toml", "-o", out]);
+        let error = place.fails(1, &["render", "missing.toml", "-o", out]);
         let place_name = out.split('/').next().unwrap();
         assert!(error.contains(place_name), "{out}: {error}");
     }

@@ -68,6 +68,24 @@ fn an_edit_does_not_stop_the_preview() {
     }
 }
 
+#[test]
+fn another_scene_stops_the_preview_too() {
+    for side in [SMALL, LARGE] {
+        let stage = Stage::new();
+        stage.submit(1, side, 100);
+        stage.call().run();
+        let preview = stage.call();
+        stage.submit(2, side, 1);
+        assert!(!preview.is_stopped(), "an edit at {side} pixels a side");
+        stage.session.abandon();
+        assert!(preview.is_stopped(), "another scene at {side} pixels a side");
+        preview.until_stopped();
+        let calls = stage.run_until(|status| status.generation == 2 && status.phase == Phase::Done);
+        let is_shown = stage.session.latest().is_some_and(|frame| seed_of(&frame.job) == 2);
+        assert!(is_shown, "the next job has its picture after {} calls", calls.len());
+    }
+}
+
 /// A drag at the pace of the renderer: every job gets its picture.
 #[test]
 fn a_drag_always_shows_something() {
