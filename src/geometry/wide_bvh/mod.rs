@@ -18,6 +18,7 @@ use std::cell::RefCell;
 
 use glam::Vec3;
 
+use crate::geometry::TraversalCost;
 use crate::geometry::lanes::Portable;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::nearest::{Nearest, Search};
@@ -149,6 +150,17 @@ impl WideBvh {
     /// Takes the hits of one ray in object space into a search.
     pub(super) fn intersect(&self, ray: &Ray, object: u32, search: &mut Search) {
         dispatch::intersect(self, ray, object, search);
+    }
+
+    /// [`WideBvh::intersect`] that adds up what it takes, the same on every machine.
+    pub(super) fn intersect_counted(
+        &self,
+        ray: &Ray,
+        object: u32,
+        search: &mut Search,
+        cost: &mut TraversalCost,
+    ) {
+        single::nearest_counted(self, ray, object, search, cost);
     }
 
     /// Whether anything but the ray's source lies between its ends.
