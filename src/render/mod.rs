@@ -5,6 +5,7 @@
 //! accelerator and the grouping of passes.
 
 mod adaptive;
+pub mod features;
 pub mod film;
 mod integrator;
 pub mod job;
@@ -20,7 +21,8 @@ use rayon::prelude::*;
 
 use crate::render::integrator::TileRenderer;
 
-pub use film::Film;
+pub use features::{Feature, PixelMap, Seen};
+pub use film::{Film, Sampling};
 pub use job::{RenderJob, RenderSettings};
 pub use noise::Noise;
 pub use world::{Pick, World};

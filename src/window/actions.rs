@@ -2,7 +2,7 @@
 
 use super::app::App;
 use super::compare::{CompareChoice, Pinned};
-use super::dialogs::{Purpose, UnsavedAnswer, unsaved_question};
+use super::dialogs::{Purpose, UnsavedAnswer, picture_question, unsaved_question};
 use super::export_dialog::{ExportChoice, ExportFacts, export_ui};
 use super::files::Pending;
 use super::help::{HelpChoice, help_ui};
@@ -12,6 +12,7 @@ use super::start::StartChoice;
 use super::toolbar::ToolbarChoice;
 use crate::io::gallery::GALLERY;
 use crate::io::output::create_file;
+use crate::io::scene_file;
 use crate::loader::Source;
 use crate::scene::description::{SceneDescription, ToneOperator};
 use crate::scene::orbit::{self, StandardView};
@@ -79,6 +80,13 @@ impl App {
                 scene.clone_from(&self.document.description);
             }
             Action::Compare => self.toggle_compare(ctx),
+            Action::ShowPinned if self.pinned.is_none() => {
+                self.toasts.say("pin a picture first, then hold the key to see it");
+            }
+            // Shown as long as the key is down.
+            Action::ShowPinned => {}
+            Action::Show(view) => self.interface.display.view = view,
+            Action::Loupe => self.interface.loupe.press(ctx.input(|input| input.time)),
             Action::TogglePanel => self.interface.panel_shown = !self.interface.panel_shown,
             Action::FullScreen => {
                 let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
@@ -128,7 +136,7 @@ impl App {
 
     /// Shows the box that renders a picture, where it is wanted, and does what is chosen in it.
     pub(super) fn export_box(&mut self, ctx: &egui::Context) {
-        if !self.interface.export_shown {
+        if !self.interface.export_shown || self.interface.start_shown {
             return;
         }
         let facts = ExportFacts {
@@ -190,7 +198,8 @@ impl App {
     /// Keeps the window open while there are edits to ask about.
     pub(super) fn guard_close(&mut self, ctx: &egui::Context) {
         let asked = ctx.input(|input| input.viewport().close_requested());
-        if asked && self.document.is_dirty() && !self.files.close_confirmed {
+        let is_at_work = self.document.is_dirty() || self.exporter.progress().is_some();
+        if asked && is_at_work && !self.files.close_confirmed {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.files.pending = Some(Pending::Close);
         }
@@ -199,6 +208,10 @@ impl App {
     /// Asks about unsaved edits where something waits for the answer.
     pub(super) fn ask_about_unsaved(&mut self, ctx: &egui::Context) {
         if self.files.pending.is_none() || self.files.is_saving_first {
+            return;
+        }
+        if !self.document.is_dirty() {
+            self.ask_about_picture(ctx);
             return;
         }
         match unsaved_question(ctx, &self.files.title) {
@@ -212,6 +225,20 @@ impl App {
         }
     }
 
+    /// Asks what to do with a picture that closing the window would stop.
+    fn ask_about_picture(&mut self, ctx: &egui::Context) {
+        let is_closing = self.files.pending == Some(Pending::Close);
+        if !is_closing || self.exporter.progress().is_none() {
+            return self.go_on(ctx);
+        }
+        match picture_question(ctx) {
+            None => {}
+            Some(true) => self.go_on(ctx),
+            Some(false) => self.files.pending = None,
+        }
+    }
+
+    /// Does what waited for an answer.
     pub(super) fn go_on(&mut self, ctx: &egui::Context) {
         self.files.is_saving_first = false;
         match self.files.pending.take() {
@@ -228,6 +255,7 @@ impl App {
     fn cancel(&mut self, ctx: &egui::Context) {
         let closed = std::mem::take(&mut self.interface.help_shown)
             || self.interface.picking.take().is_some()
+            || std::mem::take(&mut self.interface.loupe.shown)
             || self.dialogs.dismiss()
             || self.stop_asking()
             || self.files.cancel_loading()
@@ -256,11 +284,21 @@ impl App {
 
     /// Does what was chosen at the pinned picture.
     pub(super) fn do_compare(&mut self, scene: &mut SceneDescription, choice: CompareChoice) {
-        if let (CompareChoice::Restore, Some(pinned)) = (choice, &self.pinned) {
-            scene.clone_from(&pinned.description);
-            self.gesture.next();
+        self.gesture.next();
+        match choice {
+            CompareChoice::RestoreOne(path, value) => {
+                match scene_file::with_value(scene, &path, value) {
+                    Ok(restored) => *scene = restored,
+                    Err(error) => self.toasts.say(error.to_string()),
+                }
+            }
+            CompareChoice::Restore => {
+                if let Some(pinned) = self.pinned.take() {
+                    *scene = pinned.description;
+                }
+            }
+            CompareChoice::Close => self.pinned = None,
         }
-        self.pinned = None;
     }
 
     /// Leaves the question about unsaved edits unanswered: everything stays.

@@ -8,6 +8,7 @@ use super::files::FileWork;
 use super::gesture::Gesture;
 use super::keys::Keys;
 use super::keys_file;
+use super::lens_overlay::LensOverlay;
 use super::picture::PictureDisplay;
 use super::probe::Probe;
 use super::recovery::Recovery;
@@ -23,7 +24,7 @@ use crate::document::Document;
 use crate::io::scene_file;
 use crate::loader::{Loader, Source};
 use crate::scene::description::{CameraDescription, SceneDescription};
-use crate::session::Session;
+use crate::session::{Session, Wanted};
 use crate::threads;
 use egui::Ui;
 use std::path::PathBuf;
@@ -55,6 +56,9 @@ pub(super) struct App {
     /// The picture that the live one is compared with.
     pub(super) pinned: Option<Pinned>,
     pub(super) probe: Probe,
+    pub(super) lens_overlay: LensOverlay,
+    /// The motion of the hand that last changed the lens.
+    lens_gesture: Option<u64>,
     pub(super) watcher: Watcher,
     pub(super) recovery: Recovery,
     pub(super) picture: PictureDisplay,
@@ -87,13 +91,23 @@ impl App {
         first: Source,
         own_folder: Option<PathBuf>,
     ) -> std::io::Result<Self> {
-        let wake = || {
-            let ctx = ctx.clone();
-            move || ctx.request_repaint()
-        };
-        // One processor is left to the window itself.
-        let n_threads = threads::available().saturating_sub(1).max(1);
-        let session = Session::new(n_threads, wake())?;
+        let n_threads = remembered.clone().restore().n_threads();
+        let session = Session::new(n_threads, waking(ctx))?;
+        Self::with_session(ctx, remembered, first, own_folder, session)
+    }
+
+    /// The same around any session: tests script one.
+    ///
+    /// # Errors
+    /// When the system has no thread left.
+    pub(super) fn with_session(
+        ctx: &egui::Context,
+        remembered: Remembered,
+        first: Source,
+        own_folder: Option<PathBuf>,
+        session: Session,
+    ) -> std::io::Result<Self> {
+        let wake = || waking(ctx);
         let mut files = FileWork::new(Loader::new(wake())?);
         files.open(first);
         let empty = empty_scene();
@@ -124,6 +138,8 @@ impl App {
             thumbnails: Thumbnails::new(wake())?,
             pinned: None,
             probe: Probe::default(),
+            lens_overlay: LensOverlay::new(wake())?,
+            lens_gesture: None,
             watcher: Watcher::new(wake())?,
             recovery: Recovery::new(own_folder),
             gesture: Gesture::default(),
@@ -154,9 +170,49 @@ impl App {
             self.toasts.say(fault.to_string());
             return;
         }
+        if lens_of(&self.document.description.camera) != lens_of(&scene.camera) {
+            self.lens_gesture = Some(self.gesture.id());
+        }
         let label = edit_label(&self.document.description, &scene);
         self.document.description = scene;
         self.document.checkpoint(label, Some(self.gesture.id()));
+    }
+
+    /// Whether what is sharp is marked in the picture: where that is switched on, and while the
+    /// lens is dragged.
+    pub(super) fn marks_sharpness(&self, ctx: &egui::Context) -> bool {
+        let is_dragging = self.lens_gesture == Some(self.gesture.id())
+            && ctx.input(|input| input.pointer.any_down());
+        self.interface.lens_shown || is_dragging
+    }
+
+    /// The maps that something on the screen is made of.
+    fn wanted(&self, ctx: &egui::Context) -> Wanted {
+        let looks_behind = self.interface.loupe.shown || self.marks_sharpness(ctx);
+        let features = Wanted { features: looks_behind, ..Wanted::NOTHING };
+        self.interface.display.view.wanted().and(features)
+    }
+
+    /// Gives the renderer as many threads as are chosen. The old one ends on a thread of its own, so
+    /// that the window does not wait for it.
+    fn fit_threads(&mut self, ctx: &egui::Context) {
+        let n_threads = self.interface.n_threads();
+        if n_threads == self.work.session.status().n_threads {
+            return;
+        }
+        let wake = ctx.clone();
+        match Session::new(n_threads, move || wake.request_repaint()) {
+            Ok(session) => {
+                let old = std::mem::replace(&mut self.work.session, session);
+                if threads::spawn("retire", move || drop(old)).is_err() {
+                    self.toasts.fail("the system has no thread left");
+                }
+            }
+            Err(error) => {
+                self.interface.n_threads = Some(self.work.session.status().n_threads);
+                self.toasts.fail(format!("cannot change the number of threads: {error}"));
+            }
+        }
     }
 
     /// The bytes on show.
@@ -167,6 +223,7 @@ impl App {
     /// Takes over what changed in `scene`, makes it the job, and shows the newest picture.
     fn render(&mut self, ctx: &egui::Context, scene: SceneDescription) {
         self.take_edit(scene);
+        self.fit_threads(ctx);
         if self.files.has_scene {
             let description = &self.document.description;
             let submitted = self.work.submit(description, &self.interface, self.viewport.size);
@@ -177,9 +234,11 @@ impl App {
         }
         self.start_export(ctx);
         self.work.session.set_paused(self.interface.is_paused || !self.files.has_scene);
+        self.work.session.want(self.wanted(ctx));
         let frame = self.work.session.latest().filter(|_| self.files.has_scene);
         if let Some(frame) = frame {
-            self.picture.show(&frame, &self.document.description.tone_mapping);
+            let view = self.interface.display.view;
+            self.picture.show(&frame, view, &self.document.description.tone_mapping);
             if frame.scale == 1 {
                 self.work.note_noise(frame.generation, frame.samples, frame.noise_percent);
             }
@@ -237,6 +296,17 @@ impl eframe::App for App {
     fn save(&mut self, _storage: &mut dyn eframe::Storage) {
         self.settings.keep(&Remembered::of(&self.interface));
     }
+}
+
+/// Asks for a frame of the window, from any thread.
+fn waking(ctx: &egui::Context) -> impl Fn() + Clone + Send + Sync + 'static {
+    let ctx = ctx.clone();
+    move || ctx.request_repaint()
+}
+
+/// What decides what is sharp.
+fn lens_of(camera: &CameraDescription) -> (f64, Option<f64>) {
+    (camera.aperture_radius, camera.focal_distance)
 }
 
 /// What undo would say it undoes.

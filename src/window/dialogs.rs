@@ -201,3 +201,21 @@ pub(super) fn unsaved_question(ctx: &egui::Context, title: &str) -> Option<Unsav
     });
     modal.inner.or(modal.should_close().then_some(UnsavedAnswer::Cancel))
 }
+
+/// Asks whether to close the window while a picture is being rendered: true closes it.
+pub(super) fn picture_question(ctx: &egui::Context) -> Option<bool> {
+    let frame = modal_frame(&ctx.global_style());
+    let modal = egui::Modal::new(Id::unique("picture at work")).frame(frame).show(ctx, |ui| {
+        ui.set_width(360.0);
+        ui.heading("A picture is still being rendered");
+        ui.add_space(4.0);
+        ui.label(RichText::new("It is lost if you close the window now.").weak());
+        ui.add_space(12.0);
+        ui.horizontal(|ui| {
+            let stay = ui.button("Go on rendering").clicked().then_some(false);
+            stay.or(ui.button("Stop it and close").clicked().then_some(true))
+        })
+        .inner
+    });
+    modal.inner.or(modal.should_close().then_some(false))
+}

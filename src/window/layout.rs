@@ -2,17 +2,22 @@
 
 use super::app::{App, ViewportFacts};
 use super::handles::lights_in_picture;
+use super::keys::Action;
+use super::loupe::{LoupeFacts, loupe_ui};
 use super::panels::{self, Convergence, RenderFacts};
+use super::probe::described;
 use super::start::start_ui;
 use super::status::{PixelUnderCursor, StatusLine, Work, status_ui};
 use super::toolbar::{ToolbarChoice, ToolbarFacts, toolbar_ui};
-use super::viewport::{Click, physical_size, viewport_ui};
+use super::viewport::{Click, ViewportOutput, physical_size, viewport_ui};
+use super::views::legend_ui;
 use super::widgets::take_reset;
 use super::work::picture_size;
 use crate::geometry::{AcceleratorKind, TreeStatistics};
 use crate::scene::description::SceneDescription;
 use crate::session::{Frame, Phase};
-use egui::{Margin, Panel, Ui};
+use crate::threads;
+use egui::{Margin, Panel, Rect, Ui};
 
 impl App {
     /// The bars, the panel and the picture, editing `scene` in place.
@@ -105,9 +110,11 @@ impl App {
 
     fn panel_ui(&mut self, ui: &mut Ui, scene: &mut SceneDescription) {
         let status = self.work.session.status();
+        let mut n_threads = self.interface.n_threads();
         let interface = &mut self.interface;
         let (swatches, assets) = (&mut self.swatches, &self.work.assets);
         let facts = RenderFacts {
+            n_processors: threads::available(),
             accelerators: &AcceleratorKind::ALL.map(AcceleratorKind::name),
             tree: tree_lines(status.trees.as_ref()),
             convergence: Convergence {
@@ -119,12 +126,16 @@ impl App {
         let summary = format!("{} samples", scene.render.samples);
         panels::section(ui, "Render", &summary, false, |ui| {
             let (size, accelerator) = (&mut interface.size_mode, &mut interface.accelerator);
-            let limits = &mut interface.limits;
-            panels::render_ui(ui, &mut scene.render, size, accelerator, limits, &facts);
+            let (limits, before) = (&mut interface.limits, n_threads);
+            let render = &mut scene.render;
+            panels::render_ui(ui, render, size, accelerator, &mut n_threads, limits, &facts);
+            if n_threads != before {
+                interface.n_threads = Some(n_threads);
+            }
         });
         panels::section(ui, "Camera & lens", "", true, |ui| {
             let (unit, picking) = (&mut interface.scene_unit_mm, &mut interface.picking);
-            panels::camera_ui(ui, &mut scene.camera, unit, picking);
+            panels::camera_ui(ui, &mut scene.camera, unit, picking, &mut interface.lens_shown);
         });
         let summary = scene.lights.len().to_string();
         panels::section(ui, "Lights", &summary, true, |ui| {
@@ -175,7 +186,7 @@ impl App {
             &mut self.interface.navigation,
             self.picture.shown().as_ref(),
             size,
-            self.interface.display.zoom,
+            &mut self.interface.display,
             self.interface.picking,
         );
         if let Some(click) = output.click {
@@ -189,12 +200,18 @@ impl App {
             let selected = &mut self.interface.selection.light;
             lights_in_picture(ui, picture, clip, scene, selected);
         }
-        let chosen = self.pinned.as_mut().and_then(|pinned| pinned.show(ui, picture, clip, scene));
-        if let Some(choice) = chosen {
-            self.do_compare(scene, choice);
+        let frame = self.work.session.latest();
+        if self.marks_sharpness(ui.ctx()) {
+            let features = frame.as_ref().and_then(|frame| frame.maps.features.as_ref());
+            self.lens_overlay.show(ui, picture, clip, &scene.camera, features);
+        } else {
+            self.lens_overlay.hide();
         }
-        let is_free = self.awaited_click.is_none();
-        self.probe.follow(ui.ctx(), output.hovered_pixel, is_free, &self.work.session);
+        if let Some(legend) = self.picture.legend() {
+            legend_ui(ui, clip, legend);
+        }
+        self.pinned_ui(ui, picture, clip, scene);
+        self.look_closely(ui, &output, frame.as_deref(), scene);
         self.viewport = ViewportFacts {
             size,
             zoom_percent: output.zoom_percent,
@@ -202,6 +219,49 @@ impl App {
             flying: output.flying,
             rect: output.rect,
         };
+    }
+
+    /// The pinned picture beside the live one, or alone while its key is held.
+    fn pinned_ui(&mut self, ui: &mut Ui, picture: Rect, clip: Rect, scene: &mut SceneDescription) {
+        let is_held = self.keys.is_held(ui.ctx(), Action::ShowPinned);
+        let Some(pinned) = &mut self.pinned else { return };
+        if is_held {
+            return pinned.show_alone(ui, picture, clip);
+        }
+        if let Some(choice) = pinned.show(ui, picture, clip, scene) {
+            self.do_compare(scene, choice);
+        }
+    }
+
+    /// What is under the cursor: for the status bar, and large in the loupe.
+    fn look_closely(
+        &mut self,
+        ui: &mut Ui,
+        output: &ViewportOutput,
+        frame: Option<&Frame>,
+        scene: &SceneDescription,
+    ) {
+        let [_, height] = self.viewport.size;
+        let known = output.hovered_pixel.zip(frame).and_then(|([x, y], frame)| {
+            let map = frame.maps.features.as_ref()?;
+            // A coarse map would name the neighbour.
+            let is_full = (map.width, map.height) == (frame.job.width, frame.job.height);
+            let feature = map.get(x, y).filter(|_| is_full)?;
+            Some(described(feature, scene, &self.work.assets, height))
+        });
+        let is_free = self.awaited_click.is_none();
+        self.probe.follow(ui.ctx(), output.hovered_pixel, known, is_free, &self.work.session);
+        let is_held = self.keys.is_held(ui.ctx(), Action::Loupe);
+        self.interface.loupe.follow(is_held, ui.input(|input| input.time));
+        let pixel = output.hovered_pixel.and_then(|at| pixel_at(frame?, at));
+        if let (true, Some(pixel)) = (self.interface.loupe.shown, pixel)
+            && let (Some(image), Some(cursor)) =
+                (self.picture.image(), ui.ctx().pointer_hover_pos())
+        {
+            let (size, probed) = (self.viewport.size, self.probe.answer());
+            let facts = LoupeFacts { image, size, pixel, probed };
+            loupe_ui(ui, output.rect, cursor, &facts);
+        }
     }
 
     fn status_line(&self, frame: Option<&Frame>) -> StatusLine {
@@ -247,6 +307,10 @@ fn tree_lines(tree: Option<&TreeStatistics>) -> Vec<(&'static str, String)> {
     vec![
         ("Built in", format!("{:.0} ms", tree.build_secs * 1e3)),
         ("Nodes", tree.n_nodes.to_string()),
-        ("Memory", format!("{:.1} MB", tree.n_bytes as f64 / 1e6)),
+        ("Memory", bytes_text(tree.n_bytes as f64)),
     ]
+}
+
+fn bytes_text(bytes: f64) -> String {
+    if bytes < 1e6 { format!("{:.0} kB", bytes / 1e3) } else { format!("{:.1} MB", bytes / 1e6) }
 }

@@ -54,6 +54,7 @@ impl App {
         let folder = self.files.folder.clone();
         let records = self.files.records.clone();
         let title = self.files.title.clone();
+        let pictures = self.interface.export.folder();
         self.files.write(ctx, move || {
             let size = (frame.job.width, frame.job.height);
             let texts =
@@ -61,11 +62,11 @@ impl App {
                     Ok(texts) => texts,
                     Err(error) => return Written::Failed(format!("snapshot: {error}")),
                 };
-            let (folder, tone) = (pictures_folder(), &description.tone_mapping);
-            let path = folder.join(&title);
+            let tone = &description.tone_mapping;
+            let path = pictures.join(&title);
             let written = encode(&path, OutputFormat::Png, &frame.picture, tone, &texts)
                 .map_err(|error| error.to_string())
-                .and_then(|bytes| write_numbered(&folder, &title, "png", &bytes));
+                .and_then(|bytes| write_numbered(&pictures, &title, "png", &bytes));
             written.map_or_else(Written::Failed, Written::Snapshot)
         });
     }

@@ -1,8 +1,10 @@
 //! What the window remembers beside the scene: how it is laid out and what is chosen in it.
 
 use super::export::ExportSettings;
+use super::loupe::Loupe;
 use super::navigation::Navigation;
 use super::panels::{DisplayState, Limits, PickFor, Selection, SizeMode};
+use crate::threads;
 use egui::ThemePreference;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -29,6 +31,10 @@ pub(super) struct InterfaceState {
     pub(super) picking: Option<PickFor>,
     /// Whether lights are marked in the picture.
     pub(super) lights_shown: bool,
+    /// Whether what is sharp is marked in the picture.
+    pub(super) lens_shown: bool,
+    /// The magnifier under the cursor.
+    pub(super) loupe: Loupe,
     /// When refining stops before its samples are reached.
     pub(super) limits: Limits,
     /// Whether refining is held.
@@ -49,6 +55,8 @@ pub(super) struct InterfaceState {
     pub(super) export_shown: bool,
     /// What is set in that box.
     pub(super) export: ExportSettings,
+    /// Threads that render; `None` leaves one processor to the window itself.
+    pub(super) n_threads: Option<usize>,
     /// Dark, light, or as the system.
     pub(super) theme: ThemePreference,
     /// Width of the panel in points.
@@ -65,6 +73,8 @@ impl Default for InterfaceState {
             navigation: Navigation::default(),
             picking: None,
             lights_shown: false,
+            lens_shown: false,
+            loupe: Loupe::default(),
             limits: Limits::default(),
             is_paused: false,
             panel_shown: true,
@@ -75,6 +85,7 @@ impl Default for InterfaceState {
             start_shown: false,
             export_shown: false,
             export: ExportSettings::default(),
+            n_threads: None,
             theme: ThemePreference::System,
             panel_width: PANEL_WIDTH,
         }
@@ -90,6 +101,7 @@ pub(super) struct Remembered {
     scene_unit_mm: f64,
     recent: Vec<PathBuf>,
     export: ExportSettings,
+    n_threads: Option<usize>,
     theme: ThemePreference,
     panel_width: f32,
 }
@@ -110,6 +122,7 @@ impl Remembered {
             // A name that is no text cannot be written down.
             recent: state.recent.iter().filter(|path| path.to_str().is_some()).cloned().collect(),
             export: state.export.clone(),
+            n_threads: state.n_threads,
             theme: state.theme,
             panel_width: state.panel_width,
         }
@@ -123,6 +136,7 @@ impl Remembered {
             scene_unit_mm: self.scene_unit_mm,
             recent: self.recent,
             export: self.export,
+            n_threads: self.n_threads.map(|n| n.clamp(1, threads::available())),
             theme: self.theme,
             panel_width: self.panel_width,
             ..InterfaceState::default()
@@ -131,6 +145,11 @@ impl Remembered {
 }
 
 impl InterfaceState {
+    /// Threads that render: as chosen, or all processors but one.
+    pub(super) fn n_threads(&self) -> usize {
+        self.n_threads.unwrap_or_else(|| threads::available().saturating_sub(1).max(1))
+    }
+
     /// Forgets what belongs to the scene that was open.
     pub(super) fn forget_scene(&mut self) {
         self.selection = Selection::default();

@@ -196,7 +196,10 @@ pub(super) fn choice<T: Copy + PartialEq>(
         ui.spacing_mut().button_padding.x = 2.0;
         let n_options = options.len() as f32;
         let width = ((ui.available_width() - 2.0 * (n_options - 1.0)) / n_options).floor();
-        for (option, name, explanation) in options {
+        for (index, (option, name, explanation)) in options.iter().enumerate() {
+            // The last takes what rounding leaves, so that the edge is straight.
+            let is_last = index + 1 == options.len();
+            let width = if is_last { ui.available_width() } else { width };
             let chosen = value == option;
             let button = egui::Button::selectable(chosen, *name)
                 .frame_when_inactive(true)

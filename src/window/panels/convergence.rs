@@ -44,10 +44,10 @@ pub(super) fn convergence_ui(
     let (rect, response) =
         ui.allocate_exact_size(Vec2::new(ui.available_width(), HEIGHT), Sense::hover());
     let told = format!(
-        "noise {} % at {} samples, {} % at {}",
-        short(first.1),
+        "noise {} at {} samples, {} at {}",
+        percent_text(first.1),
         short(first.0),
-        short(last.1),
+        percent_text(last.1),
         short(last.0)
     );
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &told));
@@ -63,7 +63,7 @@ pub(super) fn convergence_ui(
         if let Some(&(samples, percent)) = nearest {
             let marker = Stroke::new(1.5, ui.visuals().strong_text_color());
             ui.painter().circle_stroke(axes.at(samples, percent), 4.0, marker);
-            let told = format!("{} % at {} samples", short(percent), short(samples));
+            let told = format!("{} at {} samples", percent_text(percent), short(samples));
             response.on_hover_text_at_pointer(told);
         }
     }
@@ -193,7 +193,7 @@ fn outlook(convergence: &Convergence<'_>, goal_percent: Option<f64>) -> String {
         return String::new();
     };
     if !convergence.is_rendering {
-        return format!("{} % after {}", short(now), duration(convergence.seconds));
+        return format!("{} after {}", percent_text(now), duration(convergence.seconds));
     }
     let mut next = 10.0_f64.powf(now.log10().floor());
     if now < next * 1.05 {
@@ -201,7 +201,17 @@ fn outlook(convergence: &Convergence<'_>, goal_percent: Option<f64>) -> String {
     }
     let next = goal_percent.filter(|goal| *goal < now).unwrap_or(next);
     let more = convergence.seconds * ((now / next).powi(2) - 1.0);
-    format!("{} % now, {} % in about {}", short(now), short(next), duration(more))
+    format!("{} now, {} in about {}", percent_text(now), percent_text(next), duration(more))
+}
+
+/// Two significant digits: the estimate is no better.
+fn percent_text(percent: f64) -> String {
+    let magnitude = percent.abs().max(1e-9).log10().floor();
+    let decimals = (1.0 - magnitude).clamp(0.0, 8.0) as usize;
+    let text = format!("{percent:.decimals$}");
+    let text =
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    format!("{text} %")
 }
 
 #[cfg(test)]
@@ -228,6 +238,15 @@ mod tests {
         assert_eq!(told(&course, 2.0, true, Some(5.0)), expected, "not to the goal");
         let expected = "10 % after 2 s";
         assert_eq!(told(&course, 2.0, false, Some(5.0)), expected, "done, yet a promise");
+    }
+
+    #[test]
+    fn percentages_have_two_digits() {
+        for (percent, text) in
+            [(9.804, "9.8 %"), (212.7, "213 %"), (1.0, "1 %"), (0.0123, "0.012 %")]
+        {
+            assert_eq!(percent_text(percent), text, "for {percent}");
+        }
     }
 
     #[test]

@@ -27,6 +27,8 @@ pub(in crate::window) struct Limits {
 
 /// What the panel shows and does not edit.
 pub(in crate::window) struct RenderFacts<'a> {
+    /// Processors that there are.
+    pub(in crate::window) n_processors: usize,
     /// Names of the accelerators, in the order of the list.
     pub(in crate::window) accelerators: &'a [&'a str],
     /// Lines on the tree that was built, name and value.
@@ -43,7 +45,7 @@ const SAMPLERS: [(SamplerKind, &str, &str); 2] = [
     (SamplerKind::Sobol, "Sobol", "evenly spread numbers: less noise at the same cost"),
     (SamplerKind::Random, "Random", "independent numbers, to see the difference"),
 ];
-const FILTERS: [(FilterKind, &str, &str); 1] = [(FilterKind::Box, "Box", "uniform over the pixel")];
+const FILTERS: [(FilterKind, &str); 1] = [(FilterKind::Box, "Box")];
 const SIZES: [(SizeMode, &str, &str); 2] = [
     (SizeMode::Window, "Window", "as many pixels as the window shows"),
     (SizeMode::Fixed, "Fixed", "the size below, which the scene file keeps"),
@@ -55,6 +57,7 @@ pub(in crate::window) fn render_ui(
     render: &mut RenderDescription,
     size_mode: &mut SizeMode,
     accelerator: &mut usize,
+    n_threads: &mut usize,
     limits: &mut Limits,
     facts: &RenderFacts<'_>,
 ) {
@@ -74,7 +77,8 @@ pub(in crate::window) fn render_ui(
         .help("rays per pixel at which the picture is done")
         .show_integer(ui, &mut render.samples);
     limits_ui(ui, limits);
-    choice(ui, "Light", "render.integrator", "", &mut render.integrator, &INTEGRATORS);
+    let help = "which paths of light are followed";
+    choice(ui, "Integrator", "render.integrator", help, &mut render.integrator, &INTEGRATORS);
     Figure::new("Bounces", "render.max_depth".to_owned(), 0.0..=32.0)
         .allowed(0.0..=1024.0)
         .help("how often a ray may bounce after it leaves the camera")
@@ -82,12 +86,23 @@ pub(in crate::window) fn render_ui(
     choice(ui, "Sampler", "render.sampler", "", &mut render.sampler, &SAMPLERS);
     let help = "samples go where the picture is noisy; their number is then the mean per pixel";
     switch(ui, "Adaptive", "render.adaptive", help, &mut render.adaptive);
-    let help = "how samples are weighted into pixels";
-    choice(ui, "Filter", "render.filter", help, &mut render.filter, &FILTERS);
+    row(ui, "Filter", "how samples are weighted into pixels", |ui| {
+        let shown = FILTERS.iter().find(|(kind, _)| *kind == render.filter);
+        let (names, shown) = (FILTERS.map(|(_, name)| name), shown.map_or("", |(_, name)| name));
+        if let Some(index) = pick_one(ui, "Filter", "render.filter", shown, names) {
+            render.filter = FILTERS[index].0;
+        }
+    });
     Figure::new("Seed", "render.seed".to_owned(), 0.0..=100.0)
         .allowed(0.0..=f64::from(u32::MAX))
         .help("another number gives another pattern of noise")
         .show_integer(ui, &mut render.seed);
+    let mut threads = *n_threads as u32;
+    Figure::new("Threads", String::new(), 1.0..=facts.n_processors as f64)
+        .allowed(1.0..=facts.n_processors as f64)
+        .help("processors that render; the picture is the same with any number")
+        .show_integer(ui, &mut threads);
+    *n_threads = threads as usize;
     if facts.accelerators.len() > 1 {
         row(ui, "Tree", "finds what rays meet; the picture is the same with each", |ui| {
             let shown = facts.accelerators[(*accelerator).min(facts.accelerators.len() - 1)];

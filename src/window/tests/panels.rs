@@ -9,6 +9,7 @@ use crate::window::panels::{
     display_ui, lights_ui, materials_ui, objects_ui, render_ui, textures_ui,
 };
 use crate::window::theme;
+use crate::window::views::View;
 use crate::window::widgets::take_reset;
 use egui::Role;
 use egui_kittest::Harness;
@@ -20,17 +21,20 @@ pub(super) struct Bench {
     pub(super) selection: Selection,
     size_mode: SizeMode,
     accelerator: usize,
+    n_threads: usize,
     display: DisplayState,
     unit_mm: f64,
     picking: Option<PickFor>,
     lights_shown: bool,
+    lens_shown: bool,
     limits: Limits,
 }
 
 pub(super) type Panel = fn(&mut egui::Ui, &mut Bench);
 
 const CAMERA: Panel = |ui, bench| {
-    camera_ui(ui, &mut bench.scene.camera, &mut bench.unit_mm, &mut bench.picking);
+    let (unit, picking) = (&mut bench.unit_mm, &mut bench.picking);
+    camera_ui(ui, &mut bench.scene.camera, unit, picking, &mut bench.lens_shown);
 };
 const LIGHTS: Panel = |ui, bench| {
     let (picking, shown) = (&mut bench.picking, &mut bench.lights_shown);
@@ -45,6 +49,7 @@ const DISPLAY: Panel =
     |ui, bench| display_ui(ui, &mut bench.scene.tone_mapping, &mut bench.display, None);
 const RENDER: Panel = |ui, bench| {
     let facts = RenderFacts {
+        n_processors: 4,
         accelerators: &["kd-tree", "brute-force"],
         tree: vec![("Nodes", "12".to_owned())],
         convergence: Convergence {
@@ -55,7 +60,8 @@ const RENDER: Panel = |ui, bench| {
     };
     let (size, accelerator) = (&mut bench.size_mode, &mut bench.accelerator);
     let limits = &mut bench.limits;
-    render_ui(ui, &mut bench.scene.render, size, accelerator, limits, &facts);
+    let threads = &mut bench.n_threads;
+    render_ui(ui, &mut bench.scene.render, size, accelerator, threads, limits, &facts);
 };
 pub(super) const ALL: [Panel; 7] = [CAMERA, LIGHTS, MATERIALS, TEXTURES, OBJECTS, DISPLAY, RENDER];
 
@@ -70,10 +76,12 @@ pub(super) fn bench(scene: SceneDescription) -> Bench {
         selection: Selection::default(),
         size_mode: SizeMode::Fixed,
         accelerator: 0,
+        n_threads: 1,
         display: DisplayState::default(),
         unit_mm: 100.0,
         picking: None,
         lights_shown: false,
+        lens_shown: false,
         limits: Limits::default(),
     }
 }
@@ -321,14 +329,18 @@ fn display_and_render_follow_their_controls() {
     press(&mut shown, "Curve: ACES");
     let tone = &shown.state().scene.tone_mapping;
     assert_eq!((tone.exposure, tone.operator), (1.5, ToneOperator::Aces), "another display");
+    choose(&mut shown, "View", "Circle of confusion");
+    assert_eq!(shown.state().display.view, View::Blur, "another view");
 
     let mut rendered = harness(RENDER);
     type_figure(&mut rendered, "Samples", "1000");
-    press(&mut rendered, "Light: Path");
+    press(&mut rendered, "Integrator: Path");
     choose(&mut rendered, "Accelerator", "brute-force");
     let render = &rendered.state().scene.render;
     assert_eq!((render.samples, render.integrator), (1000, IntegratorKind::Path), "other settings");
     assert_eq!(rendered.state().accelerator, 1, "another accelerator");
+    type_figure(&mut rendered, "Threads", "3");
+    assert_eq!(rendered.state().n_threads, 3, "another number of threads");
     press(&mut rendered, "Size: Window");
     assert_eq!(rendered.state().size_mode, SizeMode::Window, "the size stays fixed");
 }

@@ -54,8 +54,13 @@ fn build(
 ) -> Harness<'static, App> {
     let source = Source::File(path.to_owned());
     let ctx = egui::Context::default();
-    let theme = remembered.clone().restore().theme;
     let app = App::new(&ctx, remembered, source, own).expect("the threads start");
+    harness_of(app, size, per_point)
+}
+
+/// A window of that size in points around an app, once its scene is loaded.
+pub(super) fn harness_of(app: App, size: [f32; 2], per_point: f32) -> Harness<'static, App> {
+    let theme = app.interface.theme;
     let mut installed = false;
     let frame = move |ui: &mut egui::Ui, app: &mut App| {
         if !std::mem::replace(&mut installed, true) {
@@ -85,7 +90,7 @@ pub(super) fn wait_until(harness: &mut Harness<'_, App>, is_so: impl Fn(&App) ->
     harness.run_steps(3);
 }
 
-fn drag(harness: &mut Harness<'_, App>, from: egui::Pos2, by: egui::Vec2) {
+pub(super) fn drag(harness: &mut Harness<'_, App>, from: egui::Pos2, by: egui::Vec2) {
     harness.drag_at(from);
     harness.run_steps(1);
     for step in 1..=5 {
@@ -247,6 +252,13 @@ fn a_pinned_picture_can_be_restored() {
     harness.key_press(egui::Key::D);
     harness.run_steps(3);
     assert!(harness.query_by_label_contains("camera.aperture_radius").is_some(), "not listed");
+    harness.key_press(egui::Key::E);
+    harness.run_steps(3);
+    let line = "tone_mapping.exposure";
+    harness.get_by_label_contains(line).click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().document.description.tone_mapping.exposure, 0.0, "one value stays");
+    assert!(harness.query_by_label_contains(line).is_none(), "still listed");
     harness.get_by_role_and_label(Role::Button, "Restore").click();
     harness.run_steps(3);
     assert_eq!(harness.state().document.description, before, "the pinned scene is not back");
@@ -311,4 +323,18 @@ fn keys_come_from_the_file_and_what_is_wrong_in_it_is_told() {
         let radius = harness.state().document.description.camera.aperture_radius;
         assert_eq!(radius == 0.0, closes, "{key:?} leaves the lens at {radius}");
     }
+}
+
+#[test]
+fn another_number_of_threads_takes_over_the_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&scene_file(folder.path()), [1024.0, 700.0]);
+    wait_until(&mut harness, |app| app.work.session.latest().is_some_and(|f| f.samples == 4));
+    let n_before = harness.state().work.session.status().n_threads;
+    harness.state_mut().interface.n_threads = Some(n_before + 1);
+    wait_until(&mut harness, |app| {
+        let is_new = app.work.session.status().n_threads == n_before + 1;
+        is_new && app.work.session.latest().is_some_and(|frame| frame.samples == 4)
+    });
+    assert!(harness.state().picture_on_show().is_some(), "the picture is gone");
 }
