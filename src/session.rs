@@ -10,6 +10,7 @@
 pub mod admit;
 pub mod develop;
 mod driver;
+mod maps;
 mod renderer;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -23,6 +24,7 @@ use crate::geometry::TreeStatistics;
 use crate::render::{Film, Pick, RenderJob};
 use crate::threads;
 
+pub use maps::{Maps, Wanted};
 pub use renderer::{PoolRenderer, Renderer};
 
 /// When a picture is finished: at the first of these.
@@ -84,6 +86,8 @@ pub struct Frame {
     pub samples: u32,
     /// Estimated noise.
     pub noise_percent: Option<f64>,
+    /// What was wanted beside the picture, as far as it is there.
+    pub maps: Maps,
 }
 
 /// What the session is doing.
@@ -180,6 +184,7 @@ struct Orders {
     submitted: Option<RenderJob>,
     generation: u64,
     goal: Goal,
+    wanted: Wanted,
     is_paused: bool,
     is_closing: bool,
 }
@@ -209,6 +214,7 @@ impl Session {
                 submitted: None,
                 generation: 0,
                 goal,
+                wanted: Wanted::default(),
                 is_paused: false,
                 is_closing: false,
             }),
@@ -258,6 +264,21 @@ impl Session {
         let Some(job) = orders.submitted.clone() else { return };
         orders.place(job);
         self.shared.stop_refining.store(true, Ordering::Relaxed);
+        drop(orders);
+        self.shared.changed.notify_one();
+    }
+
+    /// Asks for maps beside the pictures, of this job and of those to come. They come with the
+    /// frames; no sample is lost for them but those of the pass they interrupt.
+    pub fn want(&self, wanted: Wanted) {
+        let mut orders = self.shared.orders();
+        if orders.wanted == wanted {
+            return;
+        }
+        if !orders.wanted.covers(wanted) {
+            self.shared.stop_refining.store(true, Ordering::Relaxed);
+        }
+        orders.wanted = wanted;
         drop(orders);
         self.shared.changed.notify_one();
     }

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use crate::geometry::mesh_tree::TracedMesh;
 use crate::geometry::nearest::{Nearest, Search};
-use crate::geometry::{AcceleratorKind, Shape};
+use crate::geometry::{AcceleratorKind, Shape, TraversalCost};
 use crate::math::{Aabb, PrimitiveId, Ray, RayBatch, Transform};
 
 /// A shape and the transform that puts it into the world.
@@ -66,6 +66,30 @@ impl Instance {
                 for (t, primitive) in self.crossings(ray).into_iter().flatten() {
                     search.offer(t as f32, PrimitiveId { object, primitive });
                 }
+            }
+        }
+    }
+
+    /// [`Instance::intersect`] that adds up what it takes.
+    pub(super) fn intersect_counted(
+        &self,
+        ray: &Ray,
+        object: u32,
+        kind: AcceleratorKind,
+        search: &mut Search,
+        cost: &mut TraversalCost,
+    ) {
+        match &self.shape {
+            Shape::Mesh(mesh) => self.with_object_ray(ray, mesh, |ray| {
+                mesh.tree(kind).intersect_counted(ray, object, search, cost);
+            }),
+            Shape::Sphere { .. }
+            | Shape::Plane { .. }
+            | Shape::Box { .. }
+            | Shape::Cone { .. }
+            | Shape::Cylinder { .. } => {
+                cost.n_primitives += 1;
+                self.intersect(ray, object, kind, search);
             }
         }
     }

@@ -6,12 +6,12 @@ use std::time::Instant;
 
 use glam::{DVec3, Vec3};
 
-use crate::geometry::AcceleratorKind;
 use crate::geometry::kd_tree::{self, Item, KdTree, Split, Walk};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::nearest::{Nearest, Search};
 use crate::geometry::triangle::ShearedRay;
 use crate::geometry::wide_bvh::WideBvh;
+use crate::geometry::{AcceleratorKind, TraversalCost};
 use crate::math::{Aabb, PrimitiveId, Ray, RayBatch};
 
 /// A mesh with the trees that have been asked for; each is built once, on first use.
@@ -106,6 +106,41 @@ impl MeshTree {
             }
             search.nearest.t()
         });
+    }
+
+    /// [`MeshTree::intersect`] that adds up what it takes.
+    pub(super) fn intersect_counted(
+        &self,
+        ray: &Ray,
+        object: u32,
+        search: &mut Search,
+        cost: &mut TraversalCost,
+    ) {
+        let sheared = ShearedRay::new(ray);
+        let mut n_triangles = 0;
+        let clipped = Ray { t_max: search.nearest.t(), ..*ray };
+        let mut test = |triangles: &[Triangle]| {
+            n_triangles += triangles.len() as u32;
+            for triangle in triangles {
+                if let Some(t) = sheared.intersect(triangle.corners) {
+                    search.offer(t, PrimitiveId { object, primitive: triangle.id });
+                }
+            }
+            search.nearest.t()
+        };
+        match &self.structure {
+            Structure::WideBvh(bvh) => bvh.intersect_counted(ray, object, search, cost),
+            Structure::KdTree(tree, triangles) => {
+                if let Some(walk) = Walk::new(&clipped, &tree.bounds) {
+                    let enter = || cost.n_nodes += 1;
+                    tree.walk_counting(&walk, enter, |range| test(&triangles[range]));
+                }
+            }
+            Structure::List(triangles) => {
+                test(triangles);
+            }
+        }
+        cost.n_primitives += n_triangles;
     }
 
     /// Whether anything but the ray's source lies between its ends.

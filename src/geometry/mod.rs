@@ -5,6 +5,7 @@
 //! light gets through where some objects are clear ([`Geometry::transmittance`]). Every accelerator
 //! gives the same answers to the last bit: of equal distances the lowest primitive wins.
 
+mod cost;
 mod extent;
 mod instance;
 pub mod kd_tree;
@@ -25,6 +26,7 @@ use crate::geometry::nearest::{Nearest, Search};
 use crate::geometry::select::Selector;
 use crate::math::{Aabb, PrimitiveId, Ray, RayBatch};
 
+pub use cost::TraversalCost;
 pub use instance::Instance;
 pub use mesh_tree::{MeshTree, TracedMesh};
 pub use nearest::Hit;

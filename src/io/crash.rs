@@ -4,9 +4,10 @@
 //! calls that led there, and the scene that was open. It is sent nowhere.
 
 use std::backtrace::Backtrace;
+use std::cell::Cell;
 use std::fs::OpenOptions;
 use std::io::{Write, stderr};
-use std::panic::PanicHookInfo;
+use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -20,6 +21,11 @@ const MOST_KEPT: u32 = 99;
 /// What a report says beside the mistake itself.
 static STATE: Mutex<State> = Mutex::new(State { folder: None, scene: None, written: Vec::new() });
 
+thread_local! {
+    /// Whether this thread runs what may panic.
+    static IS_CONTAINED: Cell<bool> = const { Cell::new(false) };
+}
+
 struct State {
     folder: Option<PathBuf>,
     scene: Option<Arc<str>>,
@@ -30,6 +36,9 @@ struct State {
 pub fn report_to(folder: Option<PathBuf>) {
     state().folder = folder;
     std::panic::set_hook(Box::new(|panic| {
+        if IS_CONTAINED.get() {
+            return;
+        }
         let line = match write_report(panic) {
             Some(path) => format!("; a report is in {}", printable_path(&path)),
             None => String::new(),
@@ -38,6 +47,15 @@ pub fn report_to(folder: Option<PathBuf>) {
         let what = printable(&what_happened(panic));
         let _ = writeln!(stderr(), "error: penumbra made a mistake: {what}{line}");
     }));
+}
+
+/// Runs a foreign decoder, which may panic on damaged data. That is an answer, `None`, and no
+/// mistake to report.
+pub fn contain<T>(work: impl FnOnce() -> T) -> Option<T> {
+    let before = IS_CONTAINED.replace(true);
+    let result = catch_unwind(AssertUnwindSafe(work)).ok();
+    IS_CONTAINED.set(before);
+    result
 }
 
 /// The text of the scene that is worked on from now on.

@@ -126,7 +126,7 @@ fn shuffled(index: u32, key: u32) -> u32 {
     }
     // The bits below the highest, as the leading digits of a number.
     let n_bits = index.ilog2();
-    let digits = (index << (32 - n_bits)).reverse_bits();
+    let digits = index.reverse_bits() >> (32 - n_bits);
     let digits = owen_scramble(digits, key.wrapping_add(n_bits));
     1 << n_bits | digits.reverse_bits() >> (32 - n_bits)
 }

@@ -1,7 +1,10 @@
 //! Where samples are summed: linear, whole passes only.
 
+use rayon::prelude::*;
+
 use crate::color::Picture;
 use crate::render::adaptive::{Allotment, is_decision};
+use crate::render::features::PixelMap;
 use crate::render::job::RenderSettings;
 use crate::render::noise::{ErrorModel, Noise};
 use crate::render::pixel::PixelSums;
@@ -16,7 +19,19 @@ pub struct Film {
     pixels: Vec<PixelSums>,
     /// Where samples do not go evenly: who gets how many until the next power of two.
     allotment: Option<Allotment>,
+    /// How errors were last told from the sums.
+    model: Option<ErrorModel>,
     noise: Option<Noise>,
+}
+
+/// What is known of a pixel beside its colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampling {
+    /// Samples so far.
+    pub n_samples: u32,
+    /// 100 x the estimated standard error of its luminance over the mean luminance of the whole
+    /// picture: the noise figure is its root mean square. NaN while there are too few samples.
+    pub error_percent: f32,
 }
 
 /// The film of that size does not fit into memory.
@@ -45,7 +60,7 @@ impl Film {
         let mut pixels = Vec::new();
         pixels.try_reserve_exact(n_pixels).map_err(|_| too_large)?;
         pixels.resize(n_pixels, PixelSums::default());
-        Ok(Self { width, height, n_samples: 0, pixels, allotment: None, noise: None })
+        Ok(Self { width, height, n_samples: 0, pixels, allotment: None, model: None, noise: None })
     }
 
     /// Width in pixels.
@@ -89,6 +104,21 @@ impl Film {
         self.noise.map(|noise| noise.percent)
     }
 
+    /// What is known of every pixel beside its colour, on the current pool.
+    pub fn sampling(&self) -> PixelMap<Sampling> {
+        let n_samples = |pixel: &PixelSums| f64::from(pixel.n_samples.max(1));
+        let light = self.pixels.iter().map(|pixel| pixel.luminance() / n_samples(pixel));
+        let mean = light.sum::<f64>() / self.pixels.len() as f64;
+        let of_pixel = |pixel: &PixelSums| {
+            let known = self.model.filter(|_| 2 <= pixel.n_samples);
+            let error = known.map_or(f64::NAN, |model| model.variance(pixel).sqrt());
+            let error_percent = (100.0 * error / mean) as f32;
+            Sampling { n_samples: pixel.n_samples, error_percent }
+        };
+        let pixels = self.pixels.par_iter().map(of_pixel).collect();
+        PixelMap { width: self.width, height: self.height, pixels }
+    }
+
     /// A tile's pixels, row by row: what the next pass starts from, and the samples that each has
     /// when the mean is `n_samples`.
     pub(super) fn tile(&self, tile: &Tile, n_samples: u32) -> (Vec<PixelSums>, Vec<u32>) {
@@ -117,6 +147,7 @@ impl Film {
         self.n_samples = n_samples;
         let model = ErrorModel::new(settings.sampler, &self.pixels);
         self.noise = model.noise(&self.pixels);
+        self.model = Some(model);
         if settings.adaptive && is_decision(n_samples) {
             let width = self.width as usize;
             self.allotment = Some(Allotment::new(width, n_samples, &self.pixels, &model));

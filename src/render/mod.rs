@@ -6,6 +6,7 @@
 
 mod adaptive;
 mod emission;
+pub mod features;
 pub mod film;
 mod integrator;
 pub mod job;
@@ -21,7 +22,8 @@ use rayon::prelude::*;
 
 use crate::render::integrator::TileRenderer;
 
-pub use film::Film;
+pub use features::{Feature, PixelMap, Seen};
+pub use film::{Film, Sampling};
 pub use job::{RenderJob, RenderSettings};
 pub use noise::Noise;
 pub use world::{Pick, World};

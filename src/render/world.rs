@@ -1,8 +1,9 @@
 //! A job made ready: its scene with the trees that rays need.
 
 use crate::geometry::{Geometry, Hit, Shape};
-use crate::math::Ray;
+use crate::math::RayBatch;
 use crate::render::emission::Emission;
+use crate::render::features::Feature;
 use crate::render::job::RenderJob;
 use crate::scene::description::IntegratorKind;
 use crate::scene::{Material, Object};
@@ -21,15 +22,13 @@ pub struct World {
     pub(super) emission: Emission,
 }
 
-/// What a ray through the middle of a pixel meets.
+/// What the pinhole ray through a place in the picture meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pick {
     /// The point met, in the world.
     pub point: [f32; 3],
-    /// Its distance along the viewing axis.
-    pub depth: f32,
-    /// Index among the enabled objects.
-    pub object: u32,
+    /// What is there.
+    pub feature: Feature,
 }
 
 impl World {
@@ -65,17 +64,15 @@ impl World {
         &self.job.scene.materials[object.material(slot) as usize]
     }
 
-    /// What the pinhole ray at (x, y) in pixels meets.
+    /// What the pinhole ray at (x, y) in pixels meets; `None` for suns and the background.
     pub fn pick(&self, x: f32, y: f32) -> Option<Pick> {
-        let camera = &self.job.scene.camera;
-        let size = glam::Vec2::new(self.job.width as f32, self.job.height as f32);
-        let ray = Ray::new(camera.eye, camera.pinhole_direction(glam::Vec2::new(x, y), size));
-        let mut rays = crate::math::RayBatch::default();
+        let ray = self.pixel_ray(x, y);
+        let mut rays = RayBatch::default();
         rays.push(ray);
         let mut hits = Vec::new();
         self.geometry.intersect(&rays, &mut hits);
-        let hit = hits.first().copied().flatten()?;
-        // The direction's component along the axis is 1, so the parameter is the depth.
-        Some(Pick { point: ray.at(hit.t).to_array(), depth: hit.t, object: hit.id.object })
+        let feature = self.feature(&ray, hits.first().copied().flatten());
+        let point = ray.at(feature.depth).to_array();
+        feature.depth.is_finite().then_some(Pick { point, feature })
     }
 }

@@ -181,7 +181,8 @@ pub fn units_per_pixel(camera: &CameraDescription, depth: f64, height: f64) -> f
 /// Diameter of the blur of a point at that depth, in pixels of a picture `height` pixels high.
 pub fn blur_px(camera: &CameraDescription, depth: f64, height: f64) -> f64 {
     let focus = focal_distance(camera);
-    let in_plane_of_focus = 2.0 * camera.aperture_radius * (depth - focus).abs() / depth;
+    // |depth - focus| / depth, which is 1 for what is infinitely far.
+    let in_plane_of_focus = 2.0 * camera.aperture_radius * (1.0 - focus / depth).abs();
     in_plane_of_focus / units_per_pixel(camera, focus, height)
 }
 

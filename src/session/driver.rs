@@ -6,9 +6,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use crate::io::{crash, printable_path};
+use crate::render::features::same_first_hits;
 use crate::render::{Film, PassStatistics, RenderJob, plan};
 use crate::session::admit::admit;
-use crate::session::{Frame, Goal, Phase, Renderer, Shared, lock};
+use crate::session::{Frame, Goal, Maps, Phase, Renderer, Shared, Wanted, lock};
 use crate::threads;
 
 /// A preview is made as fine as fits this.
@@ -21,6 +22,8 @@ const PASS_SECS: f64 = 0.25;
 const PUBLISH_INTERVAL: Duration = Duration::from_millis(33);
 /// Samples a second before anything has been measured.
 const FIRST_GUESS_RATE: f64 = 4e5;
+/// First hits a second before anything has been measured.
+const FIRST_GUESS_MAP_RATE: f64 = 2e6;
 
 /// A job at work.
 struct Work<W> {
@@ -28,6 +31,9 @@ struct Work<W> {
     job: RenderJob,
     world: Arc<W>,
     film: Film,
+    maps: Maps,
+    /// Whether maps are given up: they do not fit into memory.
+    has_no_maps: bool,
     n_invalid: u64,
     /// Seconds spent in passes.
     seconds: f64,
@@ -43,6 +49,8 @@ struct Driver<'a, R: Renderer> {
     world: &'a Mutex<Option<Arc<R::World>>>,
     /// Samples a second, as last measured.
     rate: f64,
+    /// First hits a second, as last measured.
+    map_rate: f64,
     rays_per_second: f64,
     sequence: u64,
 }
@@ -50,6 +58,7 @@ struct Driver<'a, R: Renderer> {
 enum Next {
     Close,
     Begin(u64, RenderJob),
+    Survey,
     GoOn,
 }
 
@@ -63,6 +72,7 @@ pub(super) fn run<R: Renderer>(
         renderer,
         world,
         rate: FIRST_GUESS_RATE,
+        map_rate: FIRST_GUESS_MAP_RATE,
         rays_per_second: 0.0,
         sequence: 0,
     };
@@ -72,9 +82,18 @@ pub(super) fn run<R: Renderer>(
             Next::Close => return,
             Next::Begin(generation, job) => {
                 // The old film's memory goes before the new one's is taken.
-                drop(work.take());
-                let begun = catch_unwind(AssertUnwindSafe(|| driver.begin(generation, job)));
+                let maps = work.take().filter(|old| same_first_hits(&old.job, &job));
+                let kept = |old: Work<R::World>| Maps { sampling: None, ..old.maps };
+                let maps = maps.map_or_else(Maps::default, kept);
+                let begun = catch_unwind(AssertUnwindSafe(|| driver.begin(generation, job, maps)));
                 work = driver.contained(begun).flatten();
+            }
+            Next::Survey => {
+                let Some(current) = &mut work else { continue };
+                let surveyed = catch_unwind(AssertUnwindSafe(|| driver.finish_maps(current)));
+                if driver.contained(surveyed).is_none() {
+                    work = None;
+                }
             }
             Next::GoOn => {
                 let Some(current) = &mut work else { continue };
@@ -101,8 +120,13 @@ impl<R: Renderer> Driver<'_, R> {
                 self.shared.stop_preview.store(false, Ordering::Relaxed);
                 return Next::Begin(orders.generation, job);
             }
+            let wanted = orders.wanted;
             let phase = match work.as_deref() {
                 None => None,
+                Some(work) if work.unfinished(wanted) != Wanted::NOTHING => {
+                    self.shared.stop_refining.store(false, Ordering::Relaxed);
+                    return Next::Survey;
+                }
                 Some(work) if is_reached(&orders.goal, work) => Some(Phase::Done),
                 Some(work) if orders.is_paused && work.film.n_samples() > 0 => Some(Phase::Paused),
                 Some(_) => {
@@ -119,6 +143,7 @@ impl<R: Renderer> Driver<'_, R> {
             let is_still_idle = orders.mailbox.is_none()
                 && !orders.is_closing
                 && orders.goal == goal
+                && orders.wanted == wanted
                 && work.as_deref().is_none_or(|work| {
                     is_reached(&orders.goal, work)
                         || (orders.is_paused && work.film.n_samples() > 0)
@@ -168,7 +193,7 @@ impl<R: Renderer> Driver<'_, R> {
     }
 
     /// Builds the world of a job and shows its previews.
-    fn begin(&mut self, generation: u64, job: RenderJob) -> Option<Work<R::World>> {
+    fn begin(&mut self, generation: u64, job: RenderJob, maps: Maps) -> Option<Work<R::World>> {
         let goal = self.shared.orders().goal;
         self.shared.update_status(|status| {
             status.phase = Phase::Building;
@@ -203,6 +228,8 @@ impl<R: Renderer> Driver<'_, R> {
             job,
             world,
             film,
+            maps,
+            has_no_maps: false,
             n_invalid: 0,
             seconds: 0.0,
             published_samples: 0,
@@ -216,6 +243,11 @@ impl<R: Renderer> Driver<'_, R> {
     /// which give way to a newer job.
     fn preview(&mut self, work: &mut Work<R::World>) {
         let n_pixels = u64::from(work.job.width) * u64::from(work.job.height);
+        let wanted = work.maps.absent(self.shared.orders().wanted);
+        if wanted != Wanted::NOTHING {
+            let scale = self.map_scale(&work.job);
+            self.survey(work, scale, wanted, &self.shared.stop_preview);
+        }
         let mut scale = plan::preview_scale(n_pixels, self.rate, PREVIEW_SECS);
         let mut stop = &self.shared.stop_preview;
         if scale == 1 {
@@ -244,6 +276,59 @@ impl<R: Renderer> Driver<'_, R> {
         let frame = self.frame(work, scale, &film);
         self.publish(work, frame);
         true
+    }
+
+    /// The wanted maps in full size, or coarse where there is none yet, shown with the picture that
+    /// is there.
+    fn finish_maps(&mut self, work: &mut Work<R::World>) {
+        let wanted = work.unfinished(self.shared.orders().wanted);
+        let absent = work.maps.absent(wanted);
+        if absent == Wanted::NOTHING {
+            self.survey(work, 1, wanted, &self.shared.stop_refining);
+        } else {
+            let scale = self.map_scale(&work.job);
+            self.survey(work, scale, absent, &self.shared.stop_refining);
+        }
+        let shown = lock(&self.shared.slot).clone();
+        let Some(shown) = shown.filter(|frame| frame.generation == work.generation) else { return };
+        if wanted.sampling {
+            work.maps.sampling = Some(Arc::new(self.renderer.sampling(&work.film)));
+        }
+        self.sequence += 1;
+        let (sequence, maps) = (self.sequence, work.maps.clone());
+        self.publish(work, Frame { sequence, maps, ..Frame::clone(&shown) });
+    }
+
+    /// By how much a coarse map is smaller than the picture.
+    fn map_scale(&self, job: &RenderJob) -> u32 {
+        let n_pixels = u64::from(job.width) * u64::from(job.height);
+        plan::preview_scale(n_pixels, self.map_rate, PREVIEW_SECS)
+    }
+
+    /// Makes maps of a picture smaller by `scale`.
+    fn survey(&mut self, work: &mut Work<R::World>, scale: u32, wanted: Wanted, stop: &AtomicBool) {
+        let coarse = (1 < scale).then(|| self.renderer.coarse(&work.world, scale));
+        let world = coarse.as_ref().unwrap_or(&*work.world);
+        let start = Instant::now();
+        let mut n_made = 0.0;
+        if wanted.features
+            && let Ok(map) = self.renderer.features(world, stop)
+        {
+            n_made += map.pixels.len() as f64;
+            work.maps.features = Some(Arc::new(map));
+        }
+        if wanted.costs
+            && let Ok(map) = self.renderer.costs(world, stop)
+        {
+            n_made += map.pixels.len() as f64;
+            work.maps.costs = Some(Arc::new(map));
+        }
+        if n_made >= 256.0 {
+            let measured = n_made / start.elapsed().as_secs_f64().max(1e-6);
+            self.map_rate = measured.max(0.5 * (self.map_rate + measured));
+        }
+        let is_tried = wanted.features || wanted.costs;
+        work.has_no_maps = is_tried && n_made == 0.0 && !stop.load(Ordering::Relaxed);
     }
 
     /// One pass at full size.
@@ -294,6 +379,8 @@ impl<R: Renderer> Driver<'_, R> {
 
     fn frame(&mut self, work: &Work<R::World>, scale: u32, film: &Film) -> Frame {
         self.sequence += 1;
+        let is_wanted = self.shared.orders().wanted.sampling;
+        let sampling = is_wanted.then(|| Arc::new(self.renderer.sampling(film)));
         Frame {
             generation: work.generation,
             sequence: self.sequence,
@@ -302,6 +389,7 @@ impl<R: Renderer> Driver<'_, R> {
             picture: film.picture(),
             samples: film.n_samples(),
             noise_percent: film.noise_percent(),
+            maps: Maps { sampling, ..work.maps.clone() },
         }
     }
 
@@ -309,11 +397,23 @@ impl<R: Renderer> Driver<'_, R> {
         if frame.scale == 1 {
             work.published_samples = frame.samples;
         }
+        work.maps.sampling.clone_from(&frame.maps.sampling);
         let older = lock(&self.shared.slot).replace(Arc::new(frame));
         // Freeing a large picture takes longer than a pointer swap: not under the lock.
         drop(older);
         work.last_publish = Instant::now();
         self.shared.wake();
+    }
+}
+
+impl<W> Work<W> {
+    /// The maps that are still to be made in full size.
+    fn unfinished(&self, wanted: Wanted) -> Wanted {
+        if self.has_no_maps {
+            return Wanted::NOTHING;
+        }
+        let sampling = wanted.sampling && 0 < self.film.n_samples();
+        self.maps.unfinished(Wanted { sampling, ..wanted }, &self.job)
     }
 }
 

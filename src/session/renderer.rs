@@ -2,9 +2,12 @@
 
 use std::sync::atomic::AtomicBool;
 
-use crate::geometry::TreeStatistics;
+use crate::geometry::{TraversalCost, TreeStatistics};
+use crate::render::features::{cost_map, feature_map};
 use crate::render::film::FilmTooLarge;
-use crate::render::{Film, PassStatistics, Pick, RenderJob, Stopped, World, render_pass};
+use crate::render::{
+    Feature, Film, PassStatistics, Pick, PixelMap, RenderJob, Sampling, Stopped, World, render_pass,
+};
 use crate::threads;
 
 /// Turns jobs into films.
@@ -35,6 +38,29 @@ pub trait Renderer: Send + Sync + 'static {
         n_samples: u32,
         stop: &AtomicBool,
     ) -> Result<PassStatistics, Stopped>;
+
+    /// The first hits of all pixels.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    fn features(
+        &self,
+        world: &Self::World,
+        stop: &AtomicBool,
+    ) -> Result<PixelMap<Feature>, Stopped>;
+
+    /// What the first hits of all pixels cost.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    fn costs(
+        &self,
+        world: &Self::World,
+        stop: &AtomicBool,
+    ) -> Result<PixelMap<TraversalCost>, Stopped>;
+
+    /// Samples and error of every pixel.
+    fn sampling(&self, film: &Film) -> PixelMap<Sampling>;
 
     /// What the middle ray of a pixel meets.
     fn pick(&self, world: &Self::World, x: f32, y: f32) -> Option<Pick>;
@@ -85,6 +111,18 @@ impl Renderer for PoolRenderer {
         stop: &AtomicBool,
     ) -> Result<PassStatistics, Stopped> {
         self.pool.install(|| render_pass(world, film, n_samples, stop))
+    }
+
+    fn features(&self, world: &World, stop: &AtomicBool) -> Result<PixelMap<Feature>, Stopped> {
+        self.pool.install(|| feature_map(world, stop))
+    }
+
+    fn costs(&self, world: &World, stop: &AtomicBool) -> Result<PixelMap<TraversalCost>, Stopped> {
+        self.pool.install(|| cost_map(world, stop))
+    }
+
+    fn sampling(&self, film: &Film) -> PixelMap<Sampling> {
+        self.pool.install(|| film.sampling())
     }
 
     fn pick(&self, world: &World, x: f32, y: f32) -> Option<Pick> {

@@ -12,6 +12,7 @@ use super::start::StartChoice;
 use super::toolbar::ToolbarChoice;
 use crate::io::gallery::GALLERY;
 use crate::io::output::create_file;
+use crate::io::scene_file;
 use crate::loader::Source;
 use crate::scene::description::{SceneDescription, ToneOperator};
 use crate::scene::orbit::{self, StandardView};
@@ -79,6 +80,13 @@ impl App {
                 scene.clone_from(&self.document.description);
             }
             Action::Compare => self.toggle_compare(ctx),
+            Action::ShowPinned if self.pinned.is_none() => {
+                self.toasts.say("pin a picture first, then hold the key to see it");
+            }
+            // Shown as long as the key is down.
+            Action::ShowPinned => {}
+            Action::Show(view) => self.interface.display.view = view,
+            Action::Loupe => self.interface.loupe.press(ctx.input(|input| input.time)),
             Action::TogglePanel => self.interface.panel_shown = !self.interface.panel_shown,
             Action::FullScreen => {
                 let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
@@ -247,6 +255,7 @@ impl App {
     fn cancel(&mut self, ctx: &egui::Context) {
         let closed = std::mem::take(&mut self.interface.help_shown)
             || self.interface.picking.take().is_some()
+            || std::mem::take(&mut self.interface.loupe.shown)
             || self.dialogs.dismiss()
             || self.stop_asking()
             || self.files.cancel_loading()
@@ -275,11 +284,21 @@ impl App {
 
     /// Does what was chosen at the pinned picture.
     pub(super) fn do_compare(&mut self, scene: &mut SceneDescription, choice: CompareChoice) {
-        if let (CompareChoice::Restore, Some(pinned)) = (choice, &self.pinned) {
-            scene.clone_from(&pinned.description);
-            self.gesture.next();
+        self.gesture.next();
+        match choice {
+            CompareChoice::RestoreOne(path, value) => {
+                match scene_file::with_value(scene, &path, value) {
+                    Ok(restored) => *scene = restored,
+                    Err(error) => self.toasts.say(error.to_string()),
+                }
+            }
+            CompareChoice::Restore => {
+                if let Some(pinned) = self.pinned.take() {
+                    *scene = pinned.description;
+                }
+            }
+            CompareChoice::Close => self.pinned = None,
         }
-        self.pinned = None;
     }
 
     /// Leaves the question about unsaved edits unanswered: everything stays.

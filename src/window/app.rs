@@ -8,6 +8,7 @@ use super::files::FileWork;
 use super::gesture::Gesture;
 use super::keys::Keys;
 use super::keys_file;
+use super::lens_overlay::LensOverlay;
 use super::picture::PictureDisplay;
 use super::probe::Probe;
 use super::recovery::Recovery;
@@ -23,7 +24,7 @@ use crate::document::Document;
 use crate::io::scene_file;
 use crate::loader::{Loader, Source};
 use crate::scene::description::{CameraDescription, SceneDescription};
-use crate::session::Session;
+use crate::session::{Session, Wanted};
 use crate::threads;
 use egui::Ui;
 use std::path::PathBuf;
@@ -55,6 +56,9 @@ pub(super) struct App {
     /// The picture that the live one is compared with.
     pub(super) pinned: Option<Pinned>,
     pub(super) probe: Probe,
+    pub(super) lens_overlay: LensOverlay,
+    /// The motion of the hand that last changed the lens.
+    lens_gesture: Option<u64>,
     pub(super) watcher: Watcher,
     pub(super) recovery: Recovery,
     pub(super) picture: PictureDisplay,
@@ -87,10 +91,23 @@ impl App {
         first: Source,
         own_folder: Option<PathBuf>,
     ) -> std::io::Result<Self> {
-        let wake = || {
-            let ctx = ctx.clone();
-            move || ctx.request_repaint()
-        };
+        let n_threads = remembered.clone().restore().n_threads();
+        let session = Session::new(n_threads, waking(ctx))?;
+        Self::with_session(ctx, remembered, first, own_folder, session)
+    }
+
+    /// The same around any session: tests script one.
+    ///
+    /// # Errors
+    /// When the system has no thread left.
+    pub(super) fn with_session(
+        ctx: &egui::Context,
+        remembered: Remembered,
+        first: Source,
+        own_folder: Option<PathBuf>,
+        session: Session,
+    ) -> std::io::Result<Self> {
+        let wake = || waking(ctx);
         let mut files = FileWork::new(Loader::new(wake())?);
         files.open(first);
         let empty = empty_scene();
@@ -102,7 +119,6 @@ impl App {
         }
         let settings = Settings::new(own_folder.as_deref(), remembered.clone());
         let interface = remembered.restore();
-        let session = Session::new(interface.n_threads(), wake())?;
         ctx.set_theme(interface.theme);
         Ok(Self {
             home_camera: empty.camera.clone(),
@@ -122,6 +138,8 @@ impl App {
             thumbnails: Thumbnails::new(wake())?,
             pinned: None,
             probe: Probe::default(),
+            lens_overlay: LensOverlay::new(wake())?,
+            lens_gesture: None,
             watcher: Watcher::new(wake())?,
             recovery: Recovery::new(own_folder),
             gesture: Gesture::default(),
@@ -152,9 +170,27 @@ impl App {
             self.toasts.say(fault.to_string());
             return;
         }
+        if lens_of(&self.document.description.camera) != lens_of(&scene.camera) {
+            self.lens_gesture = Some(self.gesture.id());
+        }
         let label = edit_label(&self.document.description, &scene);
         self.document.description = scene;
         self.document.checkpoint(label, Some(self.gesture.id()));
+    }
+
+    /// Whether what is sharp is marked in the picture: where that is switched on, and while the
+    /// lens is dragged.
+    pub(super) fn marks_sharpness(&self, ctx: &egui::Context) -> bool {
+        let is_dragging = self.lens_gesture == Some(self.gesture.id())
+            && ctx.input(|input| input.pointer.any_down());
+        self.interface.lens_shown || is_dragging
+    }
+
+    /// The maps that something on the screen is made of.
+    fn wanted(&self, ctx: &egui::Context) -> Wanted {
+        let looks_behind = self.interface.loupe.shown || self.marks_sharpness(ctx);
+        let features = Wanted { features: looks_behind, ..Wanted::NOTHING };
+        self.interface.display.view.wanted().and(features)
     }
 
     /// Gives the renderer as many threads as are chosen. The old one ends on a thread of its own, so
@@ -198,9 +234,11 @@ impl App {
         }
         self.start_export(ctx);
         self.work.session.set_paused(self.interface.is_paused || !self.files.has_scene);
+        self.work.session.want(self.wanted(ctx));
         let frame = self.work.session.latest().filter(|_| self.files.has_scene);
         if let Some(frame) = frame {
-            self.picture.show(&frame, &self.document.description.tone_mapping);
+            let view = self.interface.display.view;
+            self.picture.show(&frame, view, &self.document.description.tone_mapping);
             if frame.scale == 1 {
                 self.work.note_noise(frame.generation, frame.samples, frame.noise_percent);
             }
@@ -258,6 +296,17 @@ impl eframe::App for App {
     fn save(&mut self, _storage: &mut dyn eframe::Storage) {
         self.settings.keep(&Remembered::of(&self.interface));
     }
+}
+
+/// Asks for a frame of the window, from any thread.
+fn waking(ctx: &egui::Context) -> impl Fn() + Clone + Send + Sync + 'static {
+    let ctx = ctx.clone();
+    move || ctx.request_repaint()
+}
+
+/// What decides what is sharp.
+fn lens_of(camera: &CameraDescription) -> (f64, Option<f64>) {
+    (camera.aperture_radius, camera.focal_distance)
 }
 
 /// What undo would say it undoes.

@@ -1,9 +1,10 @@
 //! Compare: a pinned picture beside the live one, with a split to drag, and what differs.
 
-use crate::io::scene_file;
+use crate::io::scene_file::{self, ParameterPath};
 use crate::scene::description::SceneDescription;
 use egui::{Align2, Color32, ColorImage, Pos2, Rect, Sense, Stroke, TextureHandle, Ui, pos2};
 use std::sync::Arc;
+use toml::Value;
 
 /// Differences shown at once.
 const MOST_LINES: usize = 12;
@@ -14,13 +15,25 @@ pub(super) struct Pinned {
     pub(super) description: SceneDescription,
     texture: TextureHandle,
     split: f32,
-    differences: Vec<String>,
+    differences: Vec<Difference>,
     compared_with: Option<SceneDescription>,
 }
 
+/// A parameter whose value is not the pinned one.
+#[derive(Clone, Debug, PartialEq)]
+struct Difference {
+    path: ParameterPath,
+    /// The pinned value; `None` where the parameter was not there.
+    then: Option<Value>,
+    /// Path, then, now.
+    line: String,
+}
+
 /// What was chosen at the pinned picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum CompareChoice {
+    /// Take this one value back.
+    RestoreOne(ParameterPath, Value),
     /// Take the pinned scene back.
     Restore,
     /// Stop comparing.
@@ -37,6 +50,23 @@ impl Pinned {
         let options = egui::TextureOptions::LINEAR;
         let texture = ctx.load_texture("pinned", Arc::clone(image), options);
         Self { description, texture, split: 0.5, differences: Vec::new(), compared_with: None }
+    }
+
+    /// Draws the pinned picture over all of the live one, for as long as a key is held.
+    pub(super) fn show_alone(&self, ui: &Ui, picture: Rect, clip: Rect) {
+        let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+        let painter = ui.painter_at(clip);
+        painter.image(self.texture.id(), picture, whole, Color32::WHITE);
+        let corner = picture.intersect(clip).left_top() + egui::vec2(12.0, 12.0);
+        let text = egui::FontId::proportional(13.0);
+        let galley = painter.layout_no_wrap("pinned".to_owned(), text, Color32::WHITE);
+        let chip = Rect::from_min_size(corner, galley.size() + egui::vec2(16.0, 8.0));
+        painter.rect_filled(chip, 6.0, Color32::from_black_alpha(190));
+        painter.galley(corner + egui::vec2(8.0, 4.0), galley, Color32::WHITE);
+        let response = ui.interact(chip, ui.scope_id().with("pinned"), Sense::hover());
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Image, true, "Pinned picture alone")
+        });
     }
 
     /// Draws the pinned picture over the left part of the live one in `picture`, the split, and
@@ -98,8 +128,10 @@ impl Pinned {
                     if self.differences.is_empty() {
                         ui.weak("no setting differs");
                     }
-                    for line in self.differences.iter().take(MOST_LINES) {
-                        ui.add(egui::Label::new(line).truncate());
+                    for difference in self.differences.iter().take(MOST_LINES) {
+                        if let Some(choice) = difference_ui(ui, difference) {
+                            chosen = Some(choice);
+                        }
                     }
                     let n_more = self.differences.len().saturating_sub(MOST_LINES);
                     if 0 < n_more {
@@ -111,32 +143,49 @@ impl Pinned {
     }
 }
 
-/// The parameters whose values differ, a line each: path, then, now.
-fn differences(then: &SceneDescription, now: &SceneDescription) -> Vec<String> {
-    let known = |scene: &SceneDescription| {
-        scene_file::parameters(scene)
-            .into_iter()
-            .filter_map(|path| {
-                let value = scene_file::get(scene, &path).ok().flatten()?;
-                Some((path.to_string(), value.to_string()))
-            })
-            .collect::<Vec<_>>()
+/// A line of the list; a click takes the pinned value back.
+fn difference_ui(ui: &mut Ui, difference: &Difference) -> Option<CompareChoice> {
+    let Difference { path, then, line } = difference;
+    let Some(value) = then else {
+        ui.add(egui::Label::new(line).truncate());
+        return None;
+    };
+    let button = egui::Button::new(line).frame(false).truncate();
+    let help = format!("{line}. Click: takes this value back");
+    let is_chosen = ui.add(button).on_hover_text(help).clicked();
+    is_chosen.then(|| CompareChoice::RestoreOne(path.clone(), value.clone()))
+}
+
+/// The parameters whose values differ, in the order of the scene as it is now, then those gone.
+fn differences(then: &SceneDescription, now: &SceneDescription) -> Vec<Difference> {
+    let known = |scene: &SceneDescription| -> Vec<(ParameterPath, Value)> {
+        let value = |path: ParameterPath| {
+            let value = scene_file::get(scene, &path).ok().flatten()?;
+            Some((path, value))
+        };
+        scene_file::parameters(scene).into_iter().filter_map(value).collect()
     };
     let (then, now) = (known(then), known(now));
-    let find = |list: &[(String, String)], path: &str| {
+    let find = |list: &[(ParameterPath, Value)], path: &ParameterPath| {
         list.iter().find(|(known, _)| known == path).map(|(_, value)| value.clone())
     };
-    let mut lines = Vec::new();
-    for (path, value) in &now {
-        match find(&then, path) {
-            Some(before) if before == *value => {}
-            Some(before) => lines.push(format!("{path}: {before}, now {value}")),
-            None => lines.push(format!("{path}: new, {value}")),
+    let mut differences = Vec::new();
+    for (path, value) in now.iter().cloned() {
+        let before = find(&then, &path);
+        let line = match &before {
+            Some(before) if *before == value => continue,
+            Some(before) => format!("{path}: {before}, now {value}"),
+            None => format!("{path}: new, {value}"),
+        };
+        differences.push(Difference { path, then: before, line });
+    }
+    for (path, value) in then {
+        if find(&now, &path).is_none() {
+            let line = format!("{path}: gone, was {value}");
+            differences.push(Difference { path, then: Some(value), line });
         }
     }
-    let gone = then.iter().filter(|(path, _)| find(&now, path).is_none());
-    lines.extend(gone.map(|(path, _)| format!("{path}: gone")));
-    lines
+    differences
 }
 
 #[cfg(test)]
@@ -151,7 +200,8 @@ mod tests {
         assert!(differences(&then, &now).is_empty(), "equal scenes differ");
         now.camera.vertical_fov = 55.0;
         now.materials[0].alpha_x = 0.5;
-        let lines = differences(&then, &now);
+        let found = differences(&then, &now);
+        let lines: Vec<&str> = found.iter().map(|difference| difference.line.as_str()).collect();
         assert_eq!(
             lines,
             ["camera.vertical_fov: 40.0, now 55.0", "materials.glaze.alpha_x: 0.15, now 0.5"],

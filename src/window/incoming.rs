@@ -65,7 +65,7 @@ impl App {
             (x, y) == (picked.x, picked.y)
         });
         let Some(click) = asked else {
-            self.probe.take(&picked, scene, self.picture_size()[1]);
+            self.probe.take(&picked, scene, &self.work.assets, self.picture_size()[1]);
             return;
         };
         self.awaited_click = None;
@@ -73,7 +73,7 @@ impl App {
             self.toasts.say("there is nothing under the cursor");
             return;
         };
-        let (point, depth) = (pick.point.map(f64::from), f64::from(pick.depth));
+        let (point, depth) = (pick.point.map(f64::from), f64::from(pick.feature.depth));
         let eye = scene.camera.eye;
         let light = scene.lights.get_mut(self.interface.selection.light);
         match (click, light) {

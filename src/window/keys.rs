@@ -1,6 +1,7 @@
 //! What each key and each motion of the mouse does: one table that binds the keys, names them in
 //! tooltips and fills the help overlay.
 
+use super::views::View;
 use egui::{Key, Modifiers};
 
 /// Something a key, a button or a menu makes the window do.
@@ -50,6 +51,12 @@ pub(super) enum Action {
     Redo,
     /// Pins the picture to compare with, or lets it go.
     Compare,
+    /// Shows the pinned picture alone, while its key is held.
+    ShowPinned,
+    /// Shows another view of the scene.
+    Show(View),
+    /// Opens or closes the magnifier.
+    Loupe,
     /// Shows the panel, or hides it.
     TogglePanel,
     /// Fills the screen, or goes back to a window.
@@ -89,6 +96,9 @@ pub(super) struct Binding {
 
 const COMMAND_SHIFT: Modifiers = Modifiers { shift: true, command: true, ..Modifiers::NONE };
 
+/// One line of the help for the keys of all views.
+const VIEWS: &str = "picture, albedo, normals, depth, blur, cost, samples, noise";
+
 /// Every key the window listens to, where the file of keys says nothing else. Where one action has
 /// several, the first is named in tooltips.
 pub(super) const BINDINGS: &[Binding] = &[
@@ -115,6 +125,16 @@ pub(super) const BINDINGS: &[Binding] = &[
     key(Action::Redo, COMMAND_SHIFT, Key::Z, "redo"),
     key(Action::Redo, Modifiers::COMMAND, Key::Y, "redo"),
     key(Action::Compare, Modifiers::NONE, Key::X, "pin the picture and compare"),
+    key(Action::ShowPinned, Modifiers::NONE, Key::Backtick, "hold: the pinned picture"),
+    key(Action::Show(View::Picture), Modifiers::NONE, Key::Num1, VIEWS),
+    key(Action::Show(View::Albedo), Modifiers::NONE, Key::Num2, VIEWS),
+    key(Action::Show(View::Normals), Modifiers::NONE, Key::Num3, VIEWS),
+    key(Action::Show(View::Depth), Modifiers::NONE, Key::Num4, VIEWS),
+    key(Action::Show(View::Blur), Modifiers::NONE, Key::Num5, VIEWS),
+    key(Action::Show(View::Cost), Modifiers::NONE, Key::Num6, VIEWS),
+    key(Action::Show(View::Samples), Modifiers::NONE, Key::Num7, VIEWS),
+    key(Action::Show(View::Noise), Modifiers::NONE, Key::Num8, VIEWS),
+    key(Action::Loupe, Modifiers::NONE, Key::L, "loupe; hold for a look"),
     key(Action::TogglePanel, Modifiers::NONE, Key::N, "panel"),
     key(Action::FullScreen, Modifiers::NONE, Key::F11, "full screen"),
     key(Action::Help, Modifiers::NONE, Key::H, "this help"),
@@ -182,6 +202,13 @@ impl Keys {
         });
         actions.dedup();
         actions
+    }
+
+    /// Whether a key of an action is held down, and no field has the focus.
+    pub(super) fn is_held(&self, ctx: &egui::Context, action: Action) -> bool {
+        let typing = ctx.memory(|memory| memory.focused().is_some());
+        let mut bindings = self.bindings.iter().filter(|binding| binding.action == action);
+        !typing && ctx.input(|input| bindings.any(|binding| input.key_down(binding.key)))
     }
 
     /// The keys of an action as a person reads them: "Ctrl+Shift+S". Empty where it has none.

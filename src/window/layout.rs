@@ -2,18 +2,22 @@
 
 use super::app::{App, ViewportFacts};
 use super::handles::lights_in_picture;
+use super::keys::Action;
+use super::loupe::{LoupeFacts, loupe_ui};
 use super::panels::{self, Convergence, RenderFacts};
+use super::probe::described;
 use super::start::start_ui;
 use super::status::{PixelUnderCursor, StatusLine, Work, status_ui};
 use super::toolbar::{ToolbarChoice, ToolbarFacts, toolbar_ui};
-use super::viewport::{Click, physical_size, viewport_ui};
+use super::viewport::{Click, ViewportOutput, physical_size, viewport_ui};
+use super::views::legend_ui;
 use super::widgets::take_reset;
 use super::work::picture_size;
 use crate::geometry::{AcceleratorKind, TreeStatistics};
 use crate::scene::description::SceneDescription;
 use crate::session::{Frame, Phase};
 use crate::threads;
-use egui::{Margin, Panel, Ui};
+use egui::{Margin, Panel, Rect, Ui};
 
 impl App {
     /// The bars, the panel and the picture, editing `scene` in place.
@@ -131,7 +135,7 @@ impl App {
         });
         panels::section(ui, "Camera & lens", "", true, |ui| {
             let (unit, picking) = (&mut interface.scene_unit_mm, &mut interface.picking);
-            panels::camera_ui(ui, &mut scene.camera, unit, picking);
+            panels::camera_ui(ui, &mut scene.camera, unit, picking, &mut interface.lens_shown);
         });
         let summary = scene.lights.len().to_string();
         panels::section(ui, "Lights", &summary, true, |ui| {
@@ -182,7 +186,7 @@ impl App {
             &mut self.interface.navigation,
             self.picture.shown().as_ref(),
             size,
-            self.interface.display.zoom,
+            &mut self.interface.display,
             self.interface.picking,
         );
         if let Some(click) = output.click {
@@ -196,12 +200,18 @@ impl App {
             let selected = &mut self.interface.selection.light;
             lights_in_picture(ui, picture, clip, scene, selected);
         }
-        let chosen = self.pinned.as_mut().and_then(|pinned| pinned.show(ui, picture, clip, scene));
-        if let Some(choice) = chosen {
-            self.do_compare(scene, choice);
+        let frame = self.work.session.latest();
+        if self.marks_sharpness(ui.ctx()) {
+            let features = frame.as_ref().and_then(|frame| frame.maps.features.as_ref());
+            self.lens_overlay.show(ui, picture, clip, &scene.camera, features);
+        } else {
+            self.lens_overlay.hide();
         }
-        let is_free = self.awaited_click.is_none();
-        self.probe.follow(ui.ctx(), output.hovered_pixel, is_free, &self.work.session);
+        if let Some(legend) = self.picture.legend() {
+            legend_ui(ui, clip, legend);
+        }
+        self.pinned_ui(ui, picture, clip, scene);
+        self.look_closely(ui, &output, frame.as_deref(), scene);
         self.viewport = ViewportFacts {
             size,
             zoom_percent: output.zoom_percent,
@@ -209,6 +219,49 @@ impl App {
             flying: output.flying,
             rect: output.rect,
         };
+    }
+
+    /// The pinned picture beside the live one, or alone while its key is held.
+    fn pinned_ui(&mut self, ui: &mut Ui, picture: Rect, clip: Rect, scene: &mut SceneDescription) {
+        let is_held = self.keys.is_held(ui.ctx(), Action::ShowPinned);
+        let Some(pinned) = &mut self.pinned else { return };
+        if is_held {
+            return pinned.show_alone(ui, picture, clip);
+        }
+        if let Some(choice) = pinned.show(ui, picture, clip, scene) {
+            self.do_compare(scene, choice);
+        }
+    }
+
+    /// What is under the cursor: for the status bar, and large in the loupe.
+    fn look_closely(
+        &mut self,
+        ui: &mut Ui,
+        output: &ViewportOutput,
+        frame: Option<&Frame>,
+        scene: &SceneDescription,
+    ) {
+        let [_, height] = self.viewport.size;
+        let known = output.hovered_pixel.zip(frame).and_then(|([x, y], frame)| {
+            let map = frame.maps.features.as_ref()?;
+            // A coarse map would name the neighbour.
+            let is_full = (map.width, map.height) == (frame.job.width, frame.job.height);
+            let feature = map.get(x, y).filter(|_| is_full)?;
+            Some(described(feature, scene, &self.work.assets, height))
+        });
+        let is_free = self.awaited_click.is_none();
+        self.probe.follow(ui.ctx(), output.hovered_pixel, known, is_free, &self.work.session);
+        let is_held = self.keys.is_held(ui.ctx(), Action::Loupe);
+        self.interface.loupe.follow(is_held, ui.input(|input| input.time));
+        let pixel = output.hovered_pixel.and_then(|at| pixel_at(frame?, at));
+        if let (true, Some(pixel)) = (self.interface.loupe.shown, pixel)
+            && let (Some(image), Some(cursor)) =
+                (self.picture.image(), ui.ctx().pointer_hover_pos())
+        {
+            let (size, probed) = (self.viewport.size, self.probe.answer());
+            let facts = LoupeFacts { image, size, pixel, probed };
+            loupe_ui(ui, output.rect, cursor, &facts);
+        }
     }
 
     fn status_line(&self, frame: Option<&Frame>) -> StatusLine {

@@ -1,4 +1,5 @@
-//! From the newest frame to a texture: tone mapping on a thread of its own, newest wins.
+//! From the newest frame to a texture: tone mapping and false colours on a thread of their own,
+//! newest wins.
 //!
 //! The window's thread only hands over what should be shown and takes what is ready; a swap of a
 //! pointer under a lock is all that either thread waits for.
@@ -6,6 +7,7 @@
 use super::background::Background;
 use super::panels::PictureStatistics;
 use super::viewport::Shown;
+use super::views::{Legend, View, paint};
 use crate::scene::description::{ToneMappingDescription, ToneOperator};
 use crate::session::Frame;
 use crate::tone_mapping::map_to_srgb8;
@@ -14,34 +16,42 @@ use std::sync::Arc;
 
 /// The picture on show and the thread that prepares the next.
 pub(super) struct PictureDisplay {
-    thread: Background<Order, Displayed>,
-    asked: Option<Key>,
+    thread: Background<Order, Option<Displayed>>,
+    asked: Option<Order>,
     texture: Option<TextureHandle>,
     size: [u32; 2],
     image: Option<Arc<ColorImage>>,
     statistics: Option<PictureStatistics>,
+    legend: Option<Legend>,
 }
 
 /// What decides the bytes of a displayed picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Key {
-    generation: u64,
-    sequence: u64,
+#[derive(Clone)]
+struct Order {
+    frame: Arc<Frame>,
+    view: View,
     exposure: f64,
     operator: ToneOperator,
 }
 
-struct Order {
-    frame: Arc<Frame>,
-    exposure: f64,
-    operator: ToneOperator,
+impl Order {
+    /// Whether the same bytes would come out.
+    fn is_same(&self, other: &Self) -> bool {
+        let same_tone = (self.exposure, self.operator) == (other.exposure, other.operator);
+        self.view == other.view
+            && self.view.same(&self.frame, &other.frame)
+            && (same_tone || self.view != View::Picture)
+    }
 }
 
 struct Displayed {
     image: Arc<ColorImage>,
     size: [u32; 2],
     is_coarse: bool,
-    statistics: PictureStatistics,
+    /// Of the picture; other views have none.
+    statistics: Option<PictureStatistics>,
+    /// Of a view that is not the picture.
+    legend: Option<Legend>,
 }
 
 impl PictureDisplay {
@@ -51,7 +61,10 @@ impl PictureDisplay {
     /// When the system has no thread left.
     pub(super) fn new(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let mut bytes = Vec::new();
-        let prepare = move |order: Order| display(&order, &mut bytes);
+        let prepare = move |order: Order| match order.view {
+            View::Picture => Some(display(&order, &mut bytes)),
+            view => display_view(&order.frame, view),
+        };
         Ok(Self {
             thread: Background::new("display", prepare, wake)?,
             asked: None,
@@ -59,28 +72,26 @@ impl PictureDisplay {
             size: [1, 1],
             image: None,
             statistics: None,
+            legend: None,
         })
     }
 
-    /// Asks for this frame to be shown with that tone mapping; asking again changes nothing.
-    pub(super) fn show(&mut self, frame: &Arc<Frame>, tone: &ToneMappingDescription) {
-        let key = Key {
-            generation: frame.generation,
-            sequence: frame.sequence,
-            exposure: tone.exposure,
-            operator: tone.operator,
-        };
-        if self.asked == Some(key) {
+    /// Asks for a view of this frame to be shown, with that tone mapping if it is the picture;
+    /// asking again changes nothing.
+    pub(super) fn show(&mut self, frame: &Arc<Frame>, view: View, tone: &ToneMappingDescription) {
+        let ToneMappingDescription { exposure, operator } = *tone;
+        let order = Order { frame: Arc::clone(frame), view, exposure, operator };
+        if self.asked.as_ref().is_some_and(|asked| asked.is_same(&order)) {
             return;
         }
-        self.asked = Some(key);
-        let frame = Arc::clone(frame);
-        self.thread.order(Order { frame, exposure: tone.exposure, operator: tone.operator });
+        self.asked = Some(order.clone());
+        self.thread.order(order);
     }
 
     /// Brings a picture that is ready to the graphics card.
     pub(super) fn update(&mut self, ctx: &egui::Context) {
-        let Some(ready) = self.thread.take() else { return };
+        // Without what a view needs, what was shown before stays.
+        let Some(ready) = self.thread.take().flatten() else { return };
         let options = texture_options(ready.is_coarse);
         let image = Arc::clone(&ready.image);
         match &mut self.texture {
@@ -89,7 +100,8 @@ impl PictureDisplay {
         }
         self.size = ready.size;
         self.image = Some(ready.image);
-        self.statistics = Some(ready.statistics);
+        self.statistics = ready.statistics;
+        self.legend = ready.legend;
     }
 
     /// The picture on show, once there is one.
@@ -100,6 +112,11 @@ impl PictureDisplay {
     /// The bytes on show.
     pub(super) fn image(&self) -> Option<&Arc<ColorImage>> {
         self.image.as_ref()
+    }
+
+    /// What the colours on show mean, where they are not the picture's own.
+    pub(super) fn legend(&self) -> Option<&Legend> {
+        self.legend.as_ref()
     }
 
     /// Histogram of the picture on show.
@@ -128,8 +145,22 @@ fn display(order: &Order, bytes: &mut Vec<[u8; 3]>) -> Displayed {
         image: Arc::new(ColorImage::new(size, pixels)),
         size: [order.frame.job.width, order.frame.job.height],
         is_coarse: 1 < order.frame.scale,
-        statistics: PictureStatistics { histogram },
+        statistics: Some(PictureStatistics { histogram }),
+        legend: None,
     }
+}
+
+/// A view other than the picture, where the frame has what it needs.
+fn display_view(frame: &Frame, view: View) -> Option<Displayed> {
+    let painted = paint(view, frame)?;
+    let size = [frame.job.width, frame.job.height];
+    Some(Displayed {
+        is_coarse: painted.image.size[0] < size[0] as usize,
+        image: Arc::new(painted.image),
+        size,
+        statistics: None,
+        legend: Some(painted.legend),
+    })
 }
 
 /// A full picture shows its pixels when enlarged; a coarse one is smoothed.

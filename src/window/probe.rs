@@ -1,7 +1,10 @@
 //! What is under the resting cursor: depth, object, and how large its blur is.
 
 use super::status::Probed;
-use crate::scene::description::SceneDescription;
+use crate::render::{Feature, Seen};
+use crate::scene::Assets;
+use crate::scene::assets::MeshKey;
+use crate::scene::description::{ObjectDescription, SceneDescription};
 use crate::scene::orbit;
 use crate::session::{Picked, Session};
 use std::time::Duration;
@@ -19,18 +22,23 @@ pub(super) struct Probe {
 }
 
 impl Probe {
-    /// Follows the cursor; asks once where it rests. `is_free` is false while the renderer owes
-    /// another answer.
+    /// Follows the cursor; asks once where it rests. What is `known` needs no question. `is_free`
+    /// is false while the renderer owes another answer.
     pub(super) fn follow(
         &mut self,
         ctx: &egui::Context,
         hovered: Option<[u32; 2]>,
+        known: Option<Probed>,
         is_free: bool,
         session: &Session,
     ) {
         let now = ctx.input(|input| input.time);
         if hovered != self.at {
             *self = Self { at: hovered, since: now, asked: false, answer: None };
+        }
+        if known.is_some() {
+            self.answer = known;
+            return;
         }
         let Some([x, y]) = hovered else { return };
         if self.asked || !is_free {
@@ -46,26 +54,64 @@ impl Probe {
     }
 
     /// Takes an answer of the renderer, if it is about the pixel under the cursor.
-    pub(super) fn take(&mut self, picked: &Picked, scene: &SceneDescription, height: u32) {
+    pub(super) fn take(
+        &mut self,
+        picked: &Picked,
+        scene: &SceneDescription,
+        assets: &Assets,
+        height: u32,
+    ) {
         let Some([x, y]) = self.at else { return };
-        if (picked.x, picked.y) != (x as f32 + 0.5, y as f32 + 0.5) {
-            return;
+        if (picked.x, picked.y) == (x as f32 + 0.5, y as f32 + 0.5) {
+            let feature = picked.pick.map_or(Feature::NOTHING, |pick| pick.feature);
+            self.answer = Some(described(&feature, scene, assets, height));
         }
-        self.answer = picked.pick.map(|pick| {
-            let depth = f64::from(pick.depth);
-            let mut enabled = scene.objects.iter().filter(|object| object.enabled);
-            Probed {
-                object: enabled
-                    .nth(pick.object as usize)
-                    .map_or_else(String::new, |object| object.name.clone()),
-                depth,
-                blur_px: orbit::blur_px(&scene.camera, depth, f64::from(height)),
-            }
-        });
     }
 
     /// What is known of the pixel under the cursor.
     pub(super) fn answer(&self) -> Option<&Probed> {
         self.answer.as_ref()
+    }
+}
+
+/// What a feature is called in this scene, and how large its blur is in a picture of that height.
+pub(super) fn described(
+    feature: &Feature,
+    scene: &SceneDescription,
+    assets: &Assets,
+    height: u32,
+) -> Probed {
+    let depth = f64::from(feature.depth);
+    let (object, material) = match feature.seen {
+        Seen::Nothing => ("background".to_owned(), String::new()),
+        Seen::Light(index) => {
+            let mut enabled = scene.lights.iter().filter(|light| light.enabled);
+            let light = enabled.nth(index as usize);
+            (light.map_or_else(String::new, |light| light.name.clone()), String::new())
+        }
+        Seen::Object(index) => {
+            let mut enabled = scene.objects.iter().filter(|object| object.enabled);
+            match enabled.nth(index as usize) {
+                Some(object) => (object.name.clone(), material_name(object, feature.slot, assets)),
+                // The scene has changed since.
+                None => (String::new(), String::new()),
+            }
+        }
+    };
+    let blur_px = orbit::blur_px(&scene.camera, depth, f64::from(height));
+    Probed { object, material, depth, blur_px }
+}
+
+/// The material of an object, or of a slot of its mesh.
+fn material_name(object: &ObjectDescription, slot: u32, assets: &Assets) -> String {
+    if let Some(name) = &object.material {
+        return name.clone();
+    }
+    let mesh = MeshKey::of(object).and_then(|key| assets.meshes.get(&key));
+    let slots = mesh.map_or(&[][..], |mesh| &mesh.slots[..]);
+    let last = slots.len().saturating_sub(1);
+    match slots.get((slot as usize).min(last)) {
+        Some(Some(slot)) => slot.description.name.clone(),
+        Some(None) | None => "neutral grey".to_owned(),
     }
 }

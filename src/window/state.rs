@@ -1,6 +1,7 @@
 //! What the window remembers beside the scene: how it is laid out and what is chosen in it.
 
 use super::export::ExportSettings;
+use super::loupe::Loupe;
 use super::navigation::Navigation;
 use super::panels::{DisplayState, Limits, PickFor, Selection, SizeMode};
 use crate::threads;
@@ -30,6 +31,10 @@ pub(super) struct InterfaceState {
     pub(super) picking: Option<PickFor>,
     /// Whether lights are marked in the picture.
     pub(super) lights_shown: bool,
+    /// Whether what is sharp is marked in the picture.
+    pub(super) lens_shown: bool,
+    /// The magnifier under the cursor.
+    pub(super) loupe: Loupe,
     /// When refining stops before its samples are reached.
     pub(super) limits: Limits,
     /// Whether refining is held.
@@ -68,6 +73,8 @@ impl Default for InterfaceState {
             navigation: Navigation::default(),
             picking: None,
             lights_shown: false,
+            lens_shown: false,
+            loupe: Loupe::default(),
             limits: Limits::default(),
             is_paused: false,
             panel_shown: true,

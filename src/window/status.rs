@@ -58,9 +58,11 @@ pub(super) struct PixelUnderCursor {
 /// What is under the resting cursor.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Probed {
-    /// Name of the object.
+    /// Name of the object or light; "background" where there is none.
     pub(super) object: String,
-    /// Distance along the view, in scene units.
+    /// Name of its material; empty where it has none.
+    pub(super) material: String,
+    /// Distance along the view, in scene units; infinite for the background.
     pub(super) depth: f64,
     /// Diameter of its blur in pixels.
     pub(super) blur_px: f64,
@@ -94,7 +96,7 @@ pub(super) fn status_ui(
                     && ui.available_width() > 260.0
                 {
                     ui.label(RichText::new(probed_text(probed)).weak()).on_hover_text(
-                        "what is under the cursor: object, depth, diameter of its blur",
+                        "what is under the cursor: object, material, depth, diameter of its blur",
                     );
                 }
             }
@@ -173,8 +175,11 @@ fn pixel_text(pixel: PixelUnderCursor) -> String {
 }
 
 fn probed_text(probed: &Probed) -> String {
-    let Probed { object, depth, blur_px } = probed;
-    format!("{object} · depth {} · blur {blur_px:.1} px ·", short(*depth))
+    let Probed { object, material, depth, blur_px } = probed;
+    let material = if material.is_empty() { String::new() } else { format!(" ({material})") };
+    let depth =
+        if depth.is_finite() { format!(" · depth {}", short(*depth)) } else { String::new() };
+    format!("{object}{material}{depth} · blur {blur_px:.1} px ·")
 }
 
 #[cfg(test)]

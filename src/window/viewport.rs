@@ -1,7 +1,8 @@
 //! The picture: where it is drawn, and what the mouse does over it.
 
 use super::navigation::{Navigation, is_flying};
-use super::panels::PickFor;
+use super::panels::{DisplayState, PickFor};
+use super::scroll::scroll_bars;
 use super::theme;
 use crate::scene::description::CameraDescription;
 use crate::scene::orbit;
@@ -60,7 +61,7 @@ pub(super) fn viewport_ui(
     navigation: &mut Navigation,
     shown: Option<&Shown<'_>>,
     size: [u32; 2],
-    zoom: Zoom,
+    display: &mut DisplayState,
     picking: Option<PickFor>,
 ) -> ViewportOutput {
     let rect = ui.available_rect_before_wrap();
@@ -70,15 +71,17 @@ pub(super) fn viewport_ui(
     painter.rect_filled(rect, 0.0, theme::SURROUND);
 
     let per_point = ui.pixels_per_point();
-    let placed = picture_rect(rect, size, zoom, per_point);
+    let DisplayState { zoom, scroll, .. } = *display;
+    let placed = picture_rect(rect, size, zoom, scroll, per_point);
     match shown {
         Some(shown) => {
-            let at = picture_rect(rect, shown.size, zoom, per_point);
+            let at = picture_rect(rect, shown.size, zoom, scroll, per_point);
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             painter.image(shown.texture.id(), at, whole, Color32::WHITE);
         }
         None => waiting(ui, &painter, rect),
     }
+    scroll_bars(ui, rect, placed.size(), &mut display.scroll);
     navigation.apply(ui, &response, camera, placed.height());
     if navigation.turning {
         pivot_cross(&painter, placed, camera, navigation);
@@ -124,8 +127,9 @@ pub(super) fn physical_size(rect: Rect, pixels_per_point: f32) -> [u32; 2] {
     [pixels(rect.width()), pixels(rect.height())]
 }
 
-/// Where a picture of that size goes: in the middle, its corner on a screen pixel.
-fn picture_rect(rect: Rect, size: [u32; 2], zoom: Zoom, per_point: f32) -> Rect {
+/// Where a picture of that size goes: in the middle, or scrolled where it does not fit, its corner
+/// on a screen pixel.
+fn picture_rect(rect: Rect, size: [u32; 2], zoom: Zoom, scroll: Vec2, per_point: f32) -> Rect {
     let pixels = Vec2::new(size[0].max(1) as f32, size[1].max(1) as f32);
     let actual = pixels / per_point;
     let shown = match zoom {
@@ -138,7 +142,10 @@ fn picture_rect(rect: Rect, size: [u32; 2], zoom: Zoom, per_point: f32) -> Rect 
         Zoom::Actual => actual,
         Zoom::Double => actual * 2.0,
     };
-    let corner = rect.center() - shown / 2.0;
+    let room = rect.size() - shown;
+    let share = |room: f32, scroll: f32| if room < 0.0 { scroll } else { 0.5 };
+    let share = Vec2::new(share(room.x, scroll.x), share(room.y, scroll.y));
+    let corner = rect.min + room * share;
     let snapped = (corner.to_vec2() * per_point).round() / per_point;
     Rect::from_min_size(snapped.to_pos2(), shown)
 }
@@ -183,9 +190,11 @@ mod tests {
 
     const VIEW: Rect = Rect { min: Pos2::new(10.0, 20.0), max: Pos2::new(810.0, 620.0) };
 
+    const MIDDLE: Vec2 = Vec2::splat(0.5);
+
     #[test]
     fn a_large_picture_is_fitted_whole_and_keeps_its_shape() {
-        let at = picture_rect(VIEW, [3200, 1800], Zoom::Fit, 1.0);
+        let at = picture_rect(VIEW, [3200, 1800], Zoom::Fit, MIDDLE, 1.0);
         assert!(VIEW.expand(0.6).contains_rect(at), "{at:?} leaves {VIEW:?}");
         let aspect = at.width() / at.height();
         assert!((aspect - 16.0 / 9.0).abs() < 1e-4, "aspect {aspect}");
@@ -195,7 +204,7 @@ mod tests {
     fn a_picture_that_follows_the_window_is_drawn_pixel_on_pixel() {
         for per_point in [1.0, 1.25, 1.5, 2.0] {
             let size = physical_size(VIEW, per_point);
-            let at = picture_rect(VIEW, size, Zoom::Fit, per_point);
+            let at = picture_rect(VIEW, size, Zoom::Fit, MIDDLE, per_point);
             let pixels = at.width() * per_point;
             assert!(
                 (pixels - size[0] as f32).abs() < 1e-3,
@@ -208,9 +217,17 @@ mod tests {
     }
 
     #[test]
+    fn a_picture_that_does_not_fit_is_scrolled_from_edge_to_edge() {
+        let at = |scroll| picture_rect(VIEW, [3200, 200], Zoom::Actual, scroll, 2.0);
+        assert_eq!(at(Vec2::ZERO).left(), VIEW.left(), "not at its left edge");
+        assert_eq!(at(Vec2::splat(1.0)).right(), VIEW.right(), "not at its right edge");
+        assert_eq!(at(Vec2::ZERO).center().y, VIEW.center().y, "what fits is not in the middle");
+    }
+
+    #[test]
     fn double_size_is_twice_actual_size() {
-        let one = picture_rect(VIEW, [400, 300], Zoom::Actual, 2.0);
-        let two = picture_rect(VIEW, [400, 300], Zoom::Double, 2.0);
+        let one = picture_rect(VIEW, [400, 300], Zoom::Actual, MIDDLE, 2.0);
+        let two = picture_rect(VIEW, [400, 300], Zoom::Double, MIDDLE, 2.0);
         assert_eq!((one.width(), two.width()), (200.0, 400.0), "other sizes");
     }
 }

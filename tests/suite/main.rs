@@ -13,6 +13,8 @@ mod corpus;
 #[cfg(test)]
 mod density;
 #[cfg(test)]
+mod features;
+#[cfg(test)]
 mod floors;
 #[cfg(test)]
 mod golden;

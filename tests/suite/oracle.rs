@@ -4,3 +4,4 @@ mod closed;
 mod invariance;
 mod memory;
 mod rays;
+mod work;

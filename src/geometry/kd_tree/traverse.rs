@@ -51,13 +51,24 @@ impl KdTree {
     /// Hands the leaves that the ray may touch to `visit`, near to far, as ranges of `items`.
     /// `visit` returns the parameter up to which the ray is still of interest: the nearest hit so
     /// far, or below 0 to stop.
-    pub fn walk(&self, walk: &Walk, mut visit: impl FnMut(Range<usize>) -> f32) {
+    pub fn walk(&self, walk: &Walk, visit: impl FnMut(Range<usize>) -> f32) {
+        self.walk_counting(walk, || (), visit);
+    }
+
+    /// [`KdTree::walk`] that tells of every node it comes to.
+    pub fn walk_counting(
+        &self,
+        walk: &Walk,
+        mut enter: impl FnMut(),
+        mut visit: impl FnMut(Range<usize>) -> f32,
+    ) {
         let mut stack = [(0_u32, 0.0_f32, 0.0_f32); MAX_DEPTH];
         let mut n_stacked = 0;
         let (mut node_id, mut t_min, mut t_max) = (0_u32, walk.t_min, walk.t_max);
         let mut t_limit = walk.t_max;
         loop {
             let node = self.nodes[node_id as usize];
+            enter();
             if node.is_leaf() {
                 let first = node.payload as usize;
                 let n_items = (node.link >> 2) as usize;

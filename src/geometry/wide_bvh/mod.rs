@@ -8,6 +8,7 @@
 
 mod build;
 mod descent;
+mod group;
 mod leaf;
 mod packet;
 mod single;
@@ -17,6 +18,7 @@ use std::cell::RefCell;
 
 use glam::Vec3;
 
+use crate::geometry::TraversalCost;
 use crate::geometry::lanes::Portable;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::nearest::{Nearest, Search};
@@ -148,6 +150,17 @@ impl WideBvh {
     /// Takes the hits of one ray in object space into a search.
     pub(super) fn intersect(&self, ray: &Ray, object: u32, search: &mut Search) {
         dispatch::intersect(self, ray, object, search);
+    }
+
+    /// [`WideBvh::intersect`] that adds up what it takes, the same on every machine.
+    pub(super) fn intersect_counted(
+        &self,
+        ray: &Ray,
+        object: u32,
+        search: &mut Search,
+        cost: &mut TraversalCost,
+    ) {
+        single::nearest_counted(self, ray, object, search, cost);
     }
 
     /// Whether anything but the ray's source lies between its ends.
@@ -359,6 +372,22 @@ mod tests {
             assert_eq!(bvh.occluded(&ray, 2), expected.is_some(), "occluded, ray {i}");
         }
         assert!((1000..4000).contains(&n_hits), "{n_hits} hits");
+    }
+
+    /// Reciprocals and their products are infinite there, and their differences no numbers.
+    #[test]
+    fn a_ray_whose_box_tests_all_overflow_comes_to_an_end() {
+        let bvh = WideBvh::build(&soup(600));
+        let far = Vec3::splat(3e19);
+        let mut rays = RayBatch::default();
+        (0..32).for_each(|_| rays.push(Ray::new(far, Vec3::splat(-1e-25))));
+        let mut nearest = vec![Nearest::new(f32::INFINITY); rays.len()];
+        bvh.intersect_batch(&rays, 2, &mut nearest);
+        let mut search = Search::new(&rays.ray(0));
+        bvh.intersect(&rays.ray(0), 2, &mut search);
+        for nearest in nearest {
+            assert_eq!(nearest.hit(), search.nearest.hit(), "all the same ray");
+        }
     }
 
     #[test]

@@ -10,14 +10,15 @@
 //! interval tests of packets.
 
 use crate::geometry::lanes::{Isa, Lanes};
+use crate::geometry::wide_bvh::group::{Group, LANES, lanes};
 use crate::geometry::wide_bvh::stream::{self, Fleet, Take, TakeAny, TakeNearest};
-use crate::geometry::wide_bvh::{BLOCK, Block, LEAF, Node, WIDTH, WideBvh, leaf};
+use crate::geometry::wide_bvh::{Block, LEAF, Node, WIDTH, WideBvh};
 use crate::math::RayBatch;
 
-/// Rays of a group.
-const LANES: usize = 16;
 /// Groups of a packet.
 const GROUPS: usize = 4;
+/// Fewer rays are not worth a packet.
+const FEWEST: usize = 6;
 /// Seven children a level may wait; the builder keeps the tree below 22 levels.
 const STACK: usize = 160;
 
@@ -46,34 +47,34 @@ pub(super) fn blocked<I: Isa>(
 /// Traces all rays of a batch, together where they go together.
 #[inline(always)]
 fn trace<I: Isa, T: Take>(bvh: &WideBvh, rays: &RayBatch, fleet: &mut Fleet, hits: &mut T) {
-    let (spread_of_packet, spread_of_group) = spreads(bvh.blocks.len());
+    let spread = spread(bvh.blocks.len());
     let mut packet = Packet::<I>::idle();
-    // Rays before this one are done, from here to the packet at hand they wait for the stream.
-    let mut waiting = 0;
+    fleet.waiting.clear();
     let mut first = 0;
+    // Before this one, rays are not asked again whether a whole packet goes together.
+    let mut parted = 0;
     while first < rays.len() {
         let mut n = (LANES * GROUPS).min(rays.len() - first);
-        let mut is_together = go_together::<I>(rays, first, n, spread_of_packet);
-        if !is_together {
-            n = LANES.min(n);
-            is_together = go_together::<I>(rays, first, n, spread_of_group);
+        if first < parted || !go_together::<I>(rays, first, n, 2.0 * spread) {
+            parted = parted.max(first + n);
+            n = n_alike::<I>(rays, first, LANES.min(n), spread);
         }
-        if is_together && n >= LANES / 2 {
-            stream::trace::<I, T>(bvh, rays, waiting, first - waiting, fleet, hits);
+        if n >= FEWEST {
             packet.start(bvh, rays, first, n, hits);
             packet.walk(bvh, hits);
-            waiting = first + n;
+        } else {
+            fleet.waiting.extend(first as u32..(first + n) as u32);
         }
         first += n;
     }
-    stream::trace::<I, T>(bvh, rays, waiting, rays.len() - waiting, fleet, hits);
+    stream::trace::<I, T>(bvh, rays, fleet, hits);
 }
 
-/// How far apart the directions of a packet and of a group may be: the finer the mesh, the sooner
-/// rays part.
-fn spreads(n_blocks: usize) -> (f32, f32) {
-    let group = (25.0 / (n_blocks as f32).sqrt()).clamp(0.1, 1.0);
-    (0.5 * group, group)
+/// How far apart directions of rays that go together may be, in units of the largest component:
+/// the finer the mesh, the sooner rays part. Found by trial.
+fn spread(n_blocks: usize) -> f32 {
+    let root = (n_blocks as f32).sqrt();
+    (152.0 / (root * root.sqrt())).clamp(0.05, 0.7)
 }
 
 /// Whether directions are no farther apart than `spread` along each axis, in units of the largest
@@ -97,23 +98,24 @@ fn go_together<I: Isa>(rays: &RayBatch, first: usize, n: usize, spread: f32) -> 
     widest <= spread * largest
 }
 
-/// Sixteen rays. Lanes without a ray, or whose ray is done, end below 0.
-struct Group<I: Isa> {
-    origin: [I::F16; 3],
-    reciprocal: [I::F16; 3],
-    /// Origins, moved outwards by the bound of rounding errors, times the reciprocals.
-    near_origin: [I::F16; 3],
-    far_origin: [I::F16; 3],
-    /// Where directions are below 0.
-    negative: [u32; 3],
-    /// Where x is a direction's largest component, and where y is; elsewhere z.
-    largest: [u32; 2],
-    shear: [I::F16; 2],
-    speed: I::F16,
-    pace: I::F16,
-    limit: I::F16,
-    /// The greatest limit.
-    farthest: f32,
+/// How many of the next rays have directions no farther than `spread` from the first along each
+/// axis, in units of its largest component.
+#[inline(always)]
+fn n_alike<I: Isa>(rays: &RayBatch, first: usize, n: usize, spread: f32) -> usize {
+    let direction = rays.ray(first).direction;
+    let last = rays.ray(first + n.min(FEWEST) - 1).direction;
+    if (last - direction).abs().max_element() > spread * direction.abs().max_element() {
+        return 1;
+    }
+    let reach = I::F16::splat(spread * direction.abs().max_element());
+    let zero = I::F16::splat(0.0);
+    let mut alike = I::F16::ALL;
+    for axis in 0..3 {
+        let these = lanes::<I::F16>(&rays.direction[axis], first, n);
+        let apart = these.sub(I::F16::splat(direction[axis]));
+        alike &= apart.max(zero.sub(apart)).le(reach);
+    }
+    (alike.trailing_ones() as usize).clamp(1, n)
 }
 
 /// Groups that go together.
@@ -325,146 +327,6 @@ impl<I: Isa> Packet<I> {
     }
 }
 
-impl<I: Isa> Group<I> {
-    /// No rays.
-    #[inline(always)]
-    fn idle() -> Self {
-        let zero = I::F16::splat(0.0);
-        Self {
-            origin: [zero; 3],
-            reciprocal: [zero; 3],
-            near_origin: [zero; 3],
-            far_origin: [zero; 3],
-            negative: [0; 3],
-            largest: [0; 2],
-            shear: [zero; 2],
-            speed: zero,
-            pace: zero,
-            limit: zero,
-            farthest: -1.0,
-        }
-    }
-
-    /// What box tests need along one axis.
-    #[inline(always)]
-    fn set_axis(&mut self, axis: usize, origin: I::F16, direction: I::F16, pad: f32) {
-        let zero = I::F16::splat(0.0);
-        let negative = direction.lt(zero);
-        let smallest = I::F16::splat(WideBvh::SMALLEST);
-        let smallest = smallest.blend(zero.sub(smallest), negative);
-        let size = direction.max(zero.sub(direction));
-        let is_tiny = size.lt(I::F16::splat(WideBvh::SMALLEST));
-        let reciprocal = I::F16::splat(1.0).div(direction.blend(smallest, is_tiny));
-        let outwards = I::F16::splat(pad).blend(I::F16::splat(-pad), negative);
-        self.origin[axis] = origin;
-        self.reciprocal[axis] = reciprocal;
-        self.near_origin[axis] = origin.add(outwards).mul(reciprocal);
-        self.far_origin[axis] = origin.sub(outwards).mul(reciprocal);
-        self.negative[axis] = negative;
-    }
-
-    /// What triangle tests need.
-    #[inline(always)]
-    fn set_axes(&mut self, rays: &RayBatch, first: usize, n: usize) {
-        let x = lanes::<I::F16>(&rays.direction[0], first, n);
-        let y = lanes::<I::F16>(&rays.direction[1], first, n);
-        let z = lanes::<I::F16>(&rays.direction[2], first, n);
-        let zero = I::F16::splat(0.0);
-        let (size_x, size_y) = (x.max(zero.sub(x)), y.max(zero.sub(y)));
-        let size_z = z.max(zero.sub(z));
-        // As for a single ray: x where it is above both, y where it is not below x and above z.
-        let is_x = size_y.lt(size_x) & size_z.lt(size_x);
-        let is_y = size_x.le(size_y) & size_z.lt(size_y);
-        self.largest = [is_x, is_y];
-        let [along_x, along_y, speed] = self.turned([x, y, z]);
-        self.shear = [along_x.div(speed), along_y.div(speed)];
-        self.speed = speed;
-        self.pace = I::F16::splat(1.0).div(speed);
-    }
-
-    /// Coordinates in the order of axes that each ray has for triangle tests.
-    #[inline(always)]
-    fn turned(&self, [x, y, z]: [I::F16; 3]) -> [I::F16; 3] {
-        let [is_x, is_y] = self.largest;
-        if is_x | is_y == 0 {
-            [x, y, z]
-        } else if is_y == I::F16::ALL {
-            [z, x, y]
-        } else if is_x == I::F16::ALL {
-            [y, z, x]
-        } else {
-            [
-                x.blend(z, is_y).blend(y, is_x),
-                y.blend(x, is_y).blend(z, is_x),
-                z.blend(y, is_y).blend(x, is_x),
-            ]
-        }
-    }
-
-    /// Whether some ray touches a box before its limit.
-    #[inline(always)]
-    fn touches(&self, node: &Node, child: usize) -> bool {
-        let (mut enter, mut leave) = (I::F16::splat(0.0), self.limit);
-        for axis in 0..3 {
-            let lower = I::F16::splat(node.bounds[axis][child]);
-            let upper = I::F16::splat(node.bounds[axis + 3][child]);
-            let (near, far) = match self.negative[axis] {
-                0 => (lower, upper),
-                negative if negative == I::F16::ALL => (upper, lower),
-                negative => (lower.blend(upper, negative), upper.blend(lower, negative)),
-            };
-            enter = near.mul_sub(self.reciprocal[axis], self.near_origin[axis]).max(enter);
-            leave = far.mul_sub(self.reciprocal[axis], self.far_origin[axis]).min(leave);
-        }
-        enter.le(leave) != 0
-    }
-
-    /// Offers what the rays meet in a block; tells whether a limit changed.
-    #[inline(always)]
-    fn visit<T: Take>(&mut self, block: &Block, first: usize, hits: &mut T) -> bool {
-        let mut is_changed = false;
-        for corner in 0..BLOCK {
-            let id = block.ids[corner];
-            if corner > 0 && id == block.ids[corner - 1] {
-                break;
-            }
-            let Some((mut mask, t)) = self.hits::<T>(block, corner) else { continue };
-            let (mut parameters, mut limits) = ([0.0; LANES], [0.0; LANES]);
-            t.store(&mut parameters);
-            self.limit.store(&mut limits);
-            while mask != 0 {
-                let lane = mask.trailing_zeros() as usize;
-                mask &= mask - 1;
-                limits[lane] = hits.take(first + lane, parameters[lane], id);
-            }
-            self.limit = I::F16::load(&limits);
-            is_changed = true;
-        }
-        is_changed
-    }
-
-    /// Where the rays meet one triangle of a block before their limits.
-    #[inline(always)]
-    fn hits<T: Take>(&self, block: &Block, lane: usize) -> Option<(u32, I::F16)> {
-        let [a, b, c] = &block.corners;
-        let corners = [
-            leaf::sheared(self.relative(a, lane), self.shear),
-            leaf::sheared(self.relative(b, lane), self.shear),
-            leaf::sheared(self.relative(c, lane), self.shear),
-        ];
-        leaf::hits::<_, T>(corners, self.speed, self.pace, self.limit)
-    }
-
-    #[inline(always)]
-    fn relative(&self, corner: &[[f32; BLOCK]; 3], lane: usize) -> [I::F16; 3] {
-        self.turned([
-            I::F16::splat(corner[0][lane]).sub(self.origin[0]),
-            I::F16::splat(corner[1][lane]).sub(self.origin[1]),
-            I::F16::splat(corner[2][lane]).sub(self.origin[2]),
-        ])
-    }
-}
-
 /// A place that waits, with the parameter at which it is entered and the groups that go there.
 #[derive(Clone, Copy)]
 struct Entry {
@@ -500,15 +362,4 @@ impl Stack {
         self.n = self.n.checked_sub(1)?;
         Some(self.entries[self.n])
     }
-}
-
-/// Lanes `first..first + n`; those beyond repeat the first.
-#[inline(always)]
-fn lanes<F: Lanes>(from: &[f32], first: usize, n: usize) -> F {
-    if n >= LANES {
-        return F::load(&from[first..]);
-    }
-    let mut padded = [from[first]; LANES];
-    padded[..n].copy_from_slice(&from[first..first + n]);
-    F::load(&padded)
 }

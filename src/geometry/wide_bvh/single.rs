@@ -1,10 +1,11 @@
 //! One ray through the tree.
 
-use crate::geometry::lanes::Isa;
+use crate::geometry::TraversalCost;
+use crate::geometry::lanes::{Isa, Portable};
 use crate::geometry::nearest::Search;
 use crate::geometry::wide_bvh::descent::{DONE, Descent};
 use crate::geometry::wide_bvh::stream::{Take, TakeAny};
-use crate::geometry::wide_bvh::{LEAF, WideBvh};
+use crate::geometry::wide_bvh::{BLOCK, LEAF, WideBvh};
 use crate::math::{PrimitiveId, Ray};
 
 /// Offers hits to the search of one ray.
@@ -31,6 +32,28 @@ impl Take for TakeOne<'_> {
 #[inline(always)]
 pub(super) fn nearest<I: Isa>(bvh: &WideBvh, ray: &Ray, object: u32, search: &mut Search) {
     trace::<I, _>(bvh, ray, &mut TakeOne { search, object });
+}
+
+/// The same, with what it takes, in the arithmetic that every machine has.
+pub(super) fn nearest_counted(
+    bvh: &WideBvh,
+    ray: &Ray,
+    object: u32,
+    search: &mut Search,
+    cost: &mut TraversalCost,
+) {
+    let mut hits = TakeOne { search, object };
+    let mut descent = Descent::IDLE;
+    descent.start(bvh, ray, hits.limit(0));
+    while descent.current != DONE {
+        if descent.current & LEAF == 0 {
+            cost.n_nodes += 1;
+            descent.enter::<Portable, TakeOne<'_>>(&bvh.nodes[descent.current as usize]);
+        } else {
+            cost.n_primitives += BLOCK as u32;
+            descent.visit::<Portable, _>(bvh, 0, &mut hits);
+        }
+    }
 }
 
 /// Whether there is any hit.

@@ -75,10 +75,13 @@ impl Take for TakeAny<'_> {
 /// Places for rays under way, kept between batches.
 pub(super) struct Fleet {
     descents: [Descent; FLEET],
+    /// Rays of the batch that wait for a place.
+    pub(super) waiting: Vec<u32>,
 }
 
 impl Fleet {
-    pub(super) const IDLE: Self = Self { descents: [const { Descent::IDLE }; FLEET] };
+    pub(super) const IDLE: Self =
+        Self { descents: [const { Descent::IDLE }; FLEET], waiting: Vec::new() };
 }
 
 /// Which of the fleet are at nodes, at blocks, or done.
@@ -122,17 +125,15 @@ impl Lists {
     }
 }
 
-/// Traces the rays `first..first + n` of a batch.
+/// Traces the rays of a batch that wait.
 #[inline(always)]
 pub(super) fn trace<I: Isa, T: Take>(
     bvh: &WideBvh,
     rays: &RayBatch,
-    first: usize,
-    n: usize,
     fleet: &mut Fleet,
     hits: &mut T,
 ) {
-    let (mut next, end) = (first, first + n);
+    let mut next = 0;
     let mut ray_of = [0; FLEET];
     let mut lists = Lists::EMPTY;
     for member in 0..FLEET {
@@ -151,12 +152,13 @@ pub(super) fn trace<I: Isa, T: Take>(
         }
         for member in now.done.members() {
             let member = usize::from(*member);
-            while next < end {
-                let limit = hits.limit(next);
+            while let Some(ray) = fleet.waiting.get(next) {
+                let ray = *ray as usize;
+                let limit = hits.limit(ray);
                 next += 1;
                 if limit >= 0.0 {
-                    fleet.descents[member].start(bvh, &rays.ray(next - 1), limit);
-                    ray_of[member] = next - 1;
+                    fleet.descents[member].start(bvh, &rays.ray(ray), limit);
+                    ray_of[member] = ray;
                     lists.push(member, bvh.root);
                     break;
                 }

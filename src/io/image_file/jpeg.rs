@@ -6,6 +6,7 @@ use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
 use super::{ImageFileError, check_size, damaged, linear_by_code, texels_of};
+use crate::io::crash;
 use crate::scene::image::Image;
 
 pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageFileError> {
@@ -30,7 +31,11 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageFileError> {
     if !has_end(bytes) {
         return Err(damaged(format, &"it ends before its last marker"));
     }
-    let samples = decoder.decode().map_err(|reason| damaged(format, &reason))?;
+    // On sampling factors that no encoder writes, the decoder panics.
+    let decoded = crash::contain(|| decoder.decode());
+    let samples = decoded
+        .ok_or_else(|| damaged(format, &"the decoder cannot make sense of it"))?
+        .map_err(|reason| damaged(format, &reason))?;
     let table = linear_by_code(u16::from(u8::MAX));
     let texels =
         texels_of(&samples, ColorSpace::RGB.num_components(), |code| table[usize::from(code)]);

@@ -34,6 +34,7 @@ pub use overrides::{Override, OverrideError};
 pub use parameters::{EditError, get, has_default, parameters, with_default, with_value};
 pub use path::{ParameterPath, PathError};
 pub use range::{LARGEST, LARGEST_LIGHT, Outside, Range, SMALLEST};
+#[cfg(feature = "window")]
 pub(crate) use words::suggestion;
 pub use write::write;
 

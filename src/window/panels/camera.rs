@@ -4,7 +4,7 @@ use super::lens_diagram::lens_diagram;
 use super::{PickFor, subheading};
 use crate::scene::description::CameraDescription;
 use crate::scene::orbit;
-use crate::window::widgets::{Figure, LENGTH, parameter, row, short, triple};
+use crate::window::widgets::{Figure, LENGTH, parameter, row, short, switch, triple};
 use egui::Ui;
 
 /// Height of the sensor that equivalent f-numbers stand for, in millimetres.
@@ -13,14 +13,19 @@ const SENSOR_HEIGHT_MM: f64 = 24.0;
 const SHARP_BLUR: f64 = 1.0 / 1500.0;
 
 /// Lens and place of the camera. `scene_unit_mm` is what one scene unit stands for in the shown
-/// f-number; `picking` is set where the next click in the picture sets the focus.
+/// f-number; `picking` is set where the next click in the picture sets the focus; `lens_shown` is
+/// whether what is sharp is marked in the picture.
 pub(in crate::window) fn camera_ui(
     ui: &mut Ui,
     camera: &mut CameraDescription,
     scene_unit_mm: &mut f64,
     picking: &mut Option<PickFor>,
+    lens_shown: &mut bool,
 ) {
     lens_ui(ui, camera, scene_unit_mm, picking);
+    let help = "tints what is sharp, with lines where surfaces cross the plane of focus (green) and \
+                the limits of sharpness (blue, orange); also while the lens is dragged";
+    switch(ui, "Mark what is sharp", "", help, lens_shown);
     subheading(ui, "Place");
     let reach = orbit::focal_distance(camera);
     let speed = (reach * 0.004).max(1e-5);
@@ -56,12 +61,13 @@ fn lens_ui(
         .unit(LENGTH)
         .help("radius of the lens: wider is more blur away from the focus, 0 is a pinhole")
         .show(ui, &mut camera.aperture_radius);
-    row(ui, "", "", |ui| {
-        ui.label(f_number(camera, *scene_unit_mm))
-            .on_hover_text("f-number of the same lens on a full-frame camera, 24 mm high");
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            unit_ui(ui, scene_unit_mm);
-        });
+    let help = "the lens of a full-frame camera, 36 x 24 mm, that takes this picture: f-number and \
+                focal length";
+    row(ui, "Full frame", help, |ui| {
+        ui.label(equivalent(camera, *scene_unit_mm)).on_hover_text(help);
+    });
+    row(ui, "Scene unit", "what one scene unit stands for in the f-number", |ui| {
+        unit_ui(ui, scene_unit_mm);
     });
     focus_ui(ui, camera, focus, picking);
     Figure::new("Field of view", "camera.vertical_fov".to_owned(), 5.0..=120.0)
@@ -137,7 +143,7 @@ fn unit_ui(ui: &mut Ui, scene_unit_mm: &mut f64) {
     let units = [(1.0, "1 mm"), (10.0, "1 cm"), (100.0, "10 cm"), (1000.0, "1 m")];
     let shown = units.iter().find(|(mm, _)| mm == scene_unit_mm).map_or("", |(_, name)| name);
     let response = egui::ComboBox::from_id_salt("scene unit")
-        .width(64.0)
+        .width(ui.available_width())
         .selected_text(shown)
         .show_ui(ui, |ui| {
             for (mm, name) in units {
@@ -147,7 +153,17 @@ fn unit_ui(ui: &mut Ui, scene_unit_mm: &mut f64) {
         .response
         .accessible_name("Scene unit");
     response.on_hover_text("what one scene unit stands for in the f-number");
-    ui.weak("1 unit =");
+}
+
+/// Focal length of a full-frame camera with the same view, in millimetres.
+fn focal_length_mm(camera: &CameraDescription) -> f64 {
+    SENSOR_HEIGHT_MM / 2.0 / (camera.vertical_fov.to_radians() / 2.0).tan()
+}
+
+/// The lens of a full-frame camera that takes the same picture: f-number and focal length.
+fn equivalent(camera: &CameraDescription, scene_unit_mm: f64) -> String {
+    let focal_length = short(focal_length_mm(camera).round());
+    format!("{} · {focal_length} mm", f_number(camera, scene_unit_mm))
 }
 
 /// The f-number of a full-frame camera with the same view and lens.
@@ -155,15 +171,13 @@ fn f_number(camera: &CameraDescription, scene_unit_mm: f64) -> String {
     if camera.aperture_radius <= 0.0 {
         return "pinhole".to_owned();
     }
-    let half_height = (camera.vertical_fov.to_radians() / 2.0).tan();
-    let focal_length_mm = SENSOR_HEIGHT_MM / 2.0 / half_height;
-    let number = focal_length_mm / (2.0 * camera.aperture_radius * scene_unit_mm);
+    let number = focal_length_mm(camera) / (2.0 * camera.aperture_radius * scene_unit_mm);
     if number < 10.0 { format!("f/{number:.1}") } else { format!("f/{}", short(number.round())) }
 }
 
 /// Nearest and farthest distance that look sharp; `None` for the far end where it is infinite.
 /// A pinhole is sharp everywhere.
-pub(super) fn sharp_range(camera: &CameraDescription) -> (f64, Option<f64>) {
+pub(in crate::window) fn sharp_range(camera: &CameraDescription) -> (f64, Option<f64>) {
     let diameter = 2.0 * camera.aperture_radius;
     let focus = orbit::focal_distance(camera);
     if diameter <= 0.0 {
@@ -224,6 +238,6 @@ mod tests {
         // 33 mm on full frame at f/1.0 has an opening of 33 mm: radius 0.0165 m.
         let focal_length = 12.0 / 20.0_f64.to_radians().tan();
         let camera = camera(focal_length / 2000.0);
-        assert_eq!(f_number(&camera, 1000.0), "f/1.0", "wrong opening");
+        assert_eq!(equivalent(&camera, 1000.0), "f/1.0 · 33 mm", "wrong lens");
     }
 }

@@ -1,15 +1,26 @@
-//! Display: exposure, tone curve, zoom, histogram. Nothing here restarts the render.
+//! Display: view, exposure, tone curve, zoom, histogram. Nothing here restarts the render.
 
 use crate::scene::description::{ToneMappingDescription, ToneOperator};
 use crate::window::viewport::Zoom;
-use crate::window::widgets::{Figure, choice};
+use crate::window::views::View;
+use crate::window::widgets::{Figure, choice, pick_one, row};
 use egui::{Color32, Ui, Vec2};
 
 /// How the picture is shown, beside what the scene file keeps.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::window) struct DisplayState {
+    /// What is shown of each pixel.
+    pub(in crate::window) view: View,
     /// Size of a picture pixel on the screen.
     pub(in crate::window) zoom: Zoom,
+    /// How far a picture that does not fit is scrolled to the right and down, each 0..=1.
+    pub(in crate::window) scroll: Vec2,
+}
+
+impl Default for DisplayState {
+    fn default() -> Self {
+        Self { view: View::default(), zoom: Zoom::default(), scroll: Vec2::splat(0.5) }
+    }
 }
 
 /// Counts of displayed values, for the histogram.
@@ -31,13 +42,19 @@ const ZOOMS: [(Zoom, &str, &str); 3] = [
     (Zoom::Double, "200 %", "one picture pixel on two by two screen pixels"),
 ];
 
-/// Exposure, operator and zoom, with a histogram of what is shown.
+/// View, exposure, operator and zoom, with a histogram of what is shown.
 pub(in crate::window) fn display_ui(
     ui: &mut Ui,
     tone: &mut ToneMappingDescription,
     state: &mut DisplayState,
     statistics: Option<&PictureStatistics>,
 ) {
+    row(ui, "View", "what is shown of each pixel (1 to 8)", |ui| {
+        let names = View::ALL.map(View::name);
+        if let Some(index) = pick_one(ui, "View", "", state.view.name(), names) {
+            state.view = View::ALL[index];
+        }
+    });
     Figure::new("Exposure", "tone_mapping.exposure".to_owned(), -6.0..=6.0)
         .allowed(-64.0..=64.0)
         .unit(" EV")

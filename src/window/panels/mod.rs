@@ -12,7 +12,7 @@ mod parts;
 mod render;
 mod textures;
 
-pub(super) use camera::camera_ui;
+pub(super) use camera::{camera_ui, sharp_range};
 pub(super) use convergence::Convergence;
 pub(super) use display::{DisplayState, PictureStatistics, display_ui};
 pub(super) use lights::lights_ui;

@@ -4,7 +4,9 @@ mod export;
 mod layout;
 mod panels;
 pub(in crate::window) mod parameters;
+mod promises;
 mod start;
+mod views;
 mod whole;
 
 use crate::scene::description::{

@@ -9,6 +9,7 @@ use crate::window::panels::{
     display_ui, lights_ui, materials_ui, objects_ui, render_ui, textures_ui,
 };
 use crate::window::theme;
+use crate::window::views::View;
 use crate::window::widgets::take_reset;
 use egui::Role;
 use egui_kittest::Harness;
@@ -25,13 +26,15 @@ pub(super) struct Bench {
     unit_mm: f64,
     picking: Option<PickFor>,
     lights_shown: bool,
+    lens_shown: bool,
     limits: Limits,
 }
 
 pub(super) type Panel = fn(&mut egui::Ui, &mut Bench);
 
 const CAMERA: Panel = |ui, bench| {
-    camera_ui(ui, &mut bench.scene.camera, &mut bench.unit_mm, &mut bench.picking);
+    let (unit, picking) = (&mut bench.unit_mm, &mut bench.picking);
+    camera_ui(ui, &mut bench.scene.camera, unit, picking, &mut bench.lens_shown);
 };
 const LIGHTS: Panel = |ui, bench| {
     let (picking, shown) = (&mut bench.picking, &mut bench.lights_shown);
@@ -78,6 +81,7 @@ pub(super) fn bench(scene: SceneDescription) -> Bench {
         unit_mm: 100.0,
         picking: None,
         lights_shown: false,
+        lens_shown: false,
         limits: Limits::default(),
     }
 }
@@ -325,6 +329,8 @@ fn display_and_render_follow_their_controls() {
     press(&mut shown, "Curve: ACES");
     let tone = &shown.state().scene.tone_mapping;
     assert_eq!((tone.exposure, tone.operator), (1.5, ToneOperator::Aces), "another display");
+    choose(&mut shown, "View", "Circle of confusion");
+    assert_eq!(shown.state().display.view, View::Blur, "another view");
 
     let mut rendered = harness(RENDER);
     type_figure(&mut rendered, "Samples", "1000");

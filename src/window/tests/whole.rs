@@ -54,8 +54,13 @@ fn build(
 ) -> Harness<'static, App> {
     let source = Source::File(path.to_owned());
     let ctx = egui::Context::default();
-    let theme = remembered.clone().restore().theme;
     let app = App::new(&ctx, remembered, source, own).expect("the threads start");
+    harness_of(app, size, per_point)
+}
+
+/// A window of that size in points around an app, once its scene is loaded.
+pub(super) fn harness_of(app: App, size: [f32; 2], per_point: f32) -> Harness<'static, App> {
+    let theme = app.interface.theme;
     let mut installed = false;
     let frame = move |ui: &mut egui::Ui, app: &mut App| {
         if !std::mem::replace(&mut installed, true) {
@@ -85,7 +90,7 @@ pub(super) fn wait_until(harness: &mut Harness<'_, App>, is_so: impl Fn(&App) ->
     harness.run_steps(3);
 }
 
-fn drag(harness: &mut Harness<'_, App>, from: egui::Pos2, by: egui::Vec2) {
+pub(super) fn drag(harness: &mut Harness<'_, App>, from: egui::Pos2, by: egui::Vec2) {
     harness.drag_at(from);
     harness.run_steps(1);
     for step in 1..=5 {
@@ -247,6 +252,13 @@ fn a_pinned_picture_can_be_restored() {
     harness.key_press(egui::Key::D);
     harness.run_steps(3);
     assert!(harness.query_by_label_contains("camera.aperture_radius").is_some(), "not listed");
+    harness.key_press(egui::Key::E);
+    harness.run_steps(3);
+    let line = "tone_mapping.exposure";
+    harness.get_by_label_contains(line).click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().document.description.tone_mapping.exposure, 0.0, "one value stays");
+    assert!(harness.query_by_label_contains(line).is_none(), "still listed");
     harness.get_by_role_and_label(Role::Button, "Restore").click();
     harness.run_steps(3);
     assert_eq!(harness.state().document.description, before, "the pinned scene is not back");

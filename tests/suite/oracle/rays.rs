@@ -29,9 +29,15 @@ fn check(instances: &[Instance], rays: &RayBatch) -> Result<(), TestCaseError> {
             Some(Rgb::new(0.9 - 0.1 * k as f32, 0.3, 1.0 / 3.0))
         };
         geometry.transmittance(rays, clear, |object| object % 3 != 2, &mut shares);
-        (hits, blocked, shares)
+        // Counting is slower: some rays of each kind will do.
+        let counted = (0..rays.len()).map(|i| match i % 4 {
+            0 => geometry.intersect_counted(&rays.ray(i)).0,
+            _ => hits[i],
+        });
+        let counted: Vec<Option<Hit>> = counted.collect();
+        (hits, blocked, shares, counted)
     };
-    let (hits, blocked, shares) = trace(AcceleratorKind::BruteForce);
+    let (hits, blocked, shares, _) = trace(AcceleratorKind::BruteForce);
     for (i, hit) in hits.iter().enumerate() {
         prop_assert_eq!(hit.is_some(), blocked[i], "occluded and intersect: {:?}", rays.ray(i));
         if let Some(hit) = hit {
@@ -47,6 +53,7 @@ fn check(instances: &[Instance], rays: &RayBatch) -> Result<(), TestCaseError> {
             prop_assert_eq!(bits(found.0[i]), bits(hits[i]), "{}: {:?}", kind.name(), ray);
             prop_assert_eq!(found.1[i], blocked[i], "{} occluded: {:?}", kind.name(), ray);
             prop_assert_eq!(found.2[i], shares[i], "{} transmittance: {:?}", kind.name(), ray);
+            prop_assert_eq!(bits(found.3[i]), bits(hits[i]), "{} counted: {:?}", kind.name(), ray);
         }
     }
     Ok(())

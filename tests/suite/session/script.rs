@@ -2,9 +2,12 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use penumbra::geometry::TreeStatistics;
+use penumbra::geometry::{TraversalCost, TreeStatistics};
+use penumbra::render::features::{cost_map, feature_map};
 use penumbra::render::film::FilmTooLarge;
-use penumbra::render::{Film, PassStatistics, Pick, RenderJob, Stopped, World, render_pass};
+use penumbra::render::{
+    Feature, Film, PassStatistics, Pick, PixelMap, RenderJob, Sampling, Stopped, World, render_pass,
+};
 use penumbra::session::Renderer;
 
 use super::{Receiver, Sender, channel, seed_of};
@@ -18,6 +21,10 @@ pub(super) enum Question {
     Preview,
     /// To add so many samples to a film that has so many.
     Pass { before: u32, n_samples: u32 },
+    /// For the first hits of all pixels.
+    Features { is_coarse: bool },
+    /// For what they cost.
+    Costs,
 }
 
 /// One question, which waits for its answer.
@@ -137,6 +144,29 @@ impl Renderer for Script {
         };
         self.ask(question, seed_of(&world.world.job), stop)?;
         render_pass(&world.world, film, n_samples, &AtomicBool::new(false))
+    }
+
+    fn features(
+        &self,
+        world: &ScriptedWorld,
+        stop: &AtomicBool,
+    ) -> Result<PixelMap<Feature>, Stopped> {
+        let question = Question::Features { is_coarse: world.is_coarse };
+        self.ask(question, seed_of(&world.world.job), stop)?;
+        feature_map(&world.world, &AtomicBool::new(false))
+    }
+
+    fn costs(
+        &self,
+        world: &ScriptedWorld,
+        stop: &AtomicBool,
+    ) -> Result<PixelMap<TraversalCost>, Stopped> {
+        self.ask(Question::Costs, seed_of(&world.world.job), stop)?;
+        cost_map(&world.world, &AtomicBool::new(false))
+    }
+
+    fn sampling(&self, film: &Film) -> PixelMap<Sampling> {
+        film.sampling()
     }
 
     fn pick(&self, world: &ScriptedWorld, x: f32, y: f32) -> Option<Pick> {

@@ -1,0 +1,234 @@
+//! Error against samples and against seconds, for the scenes of the gallery and both samplers.
+//!
+//! ```text
+//! cargo bench --bench convergence [-- SCENE ...] [--width W] [--samples MAX] [--report FOLDER]
+//! ```
+//!
+//! One JSON line a point. The error is the root mean square of the difference of two pictures that
+//! differ in their seed only, over the square root of two: that of either, where the renderer has no
+//! bias (which the golden pictures of the tests see to). Beside it the noise figure that the renderer
+//! itself gives, and the seconds of one picture. The third kind, "adaptive", is "sobol" with samples
+//! that go where the error is. `--report` writes `convergence.md`, with the table, and the plots
+//! `convergence-samples.svg` and `convergence-seconds.svg`.
+#![expect(clippy::print_stdout, reason = "a bench prints its figures")]
+
+mod plot;
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use glam::Vec3;
+use penumbra::color::luminance;
+use penumbra::geometry::AcceleratorKind;
+use penumbra::io::gallery::GALLERY;
+use penumbra::loader::{Loaded, Source, load};
+use penumbra::render::{Film, RenderJob, RenderSettings, World, render_pass};
+use penumbra::scene::description::SamplerKind;
+use penumbra::scene::resolve;
+
+/// What goes wrong ends the bench.
+type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+struct Options {
+    scenes: Vec<String>,
+    width: u32,
+    samples: u32,
+    report: Option<PathBuf>,
+}
+
+/// How a picture was sampled.
+#[derive(Clone, Copy)]
+struct Kind {
+    label: &'static str,
+    sampler: SamplerKind,
+    adaptive: bool,
+}
+
+const KINDS: [Kind; 3] = [
+    Kind { label: "random", sampler: SamplerKind::Random, adaptive: false },
+    Kind { label: "sobol", sampler: SamplerKind::Sobol, adaptive: false },
+    Kind { label: "adaptive", sampler: SamplerKind::Sobol, adaptive: true },
+];
+
+/// One picture at one number of samples.
+#[derive(Clone, Copy)]
+struct Point {
+    samples: u32,
+    /// 100 x the root mean squared error over the mean.
+    percent: f64,
+    /// What the renderer says of it, the root mean square of both pictures.
+    figure: f64,
+    seconds: f64,
+}
+
+/// The points of a scene, for each kind.
+struct Measured {
+    name: &'static str,
+    curves: [Vec<Point>; 3],
+}
+
+fn main() -> Result<(), Failure> {
+    let options = options()?;
+    let pool = penumbra::threads::pool("bench", penumbra::threads::available())?;
+    let mut all = Vec::new();
+    for entry in GALLERY {
+        if !options.scenes.is_empty() && !options.scenes.iter().any(|name| name == entry.name) {
+            continue;
+        }
+        let loaded = load(&Source::Gallery(entry.name), &[], &AtomicBool::new(false))?;
+        all.push(pool.install(|| measure(entry.name, &loaded, &options))?);
+    }
+    if let Some(folder) = &options.report {
+        report(folder, &options, &all)?;
+    }
+    Ok(())
+}
+
+fn options() -> Result<Options, Failure> {
+    let mut options = Options { scenes: Vec::new(), width: 48, samples: 4096, report: None };
+    let mut arguments = std::env::args().skip(1).filter(|argument| argument != "--bench");
+    while let Some(argument) = arguments.next() {
+        let mut value = || arguments.next().ok_or("an option lacks its value");
+        match argument.as_str() {
+            "--width" => options.width = value()?.parse()?,
+            "--samples" => options.samples = value()?.parse()?,
+            "--report" => options.report = Some(value()?.into()),
+            _ => options.scenes.push(argument),
+        }
+    }
+    Ok(options)
+}
+
+fn measure(name: &'static str, loaded: &Loaded, options: &Options) -> Result<Measured, Failure> {
+    let mut curves = [const { Vec::new() }; 3];
+    for (kind, curve) in KINDS.iter().zip(&mut curves) {
+        let mut pair = Vec::new();
+        for seed in [1, 2] {
+            let world = world(loaded, options.width, *kind, seed)?;
+            pair.push((Film::new(world.job.width, world.job.height)?, world));
+        }
+        let (mut seconds, mut samples) = (0.0, 4);
+        while samples <= options.samples {
+            let start = Instant::now();
+            for (film, world) in &mut pair {
+                let n = samples - film.n_samples();
+                let never = AtomicBool::new(false);
+                render_pass(world, film, n, &never).map_err(|_| "stopped by nobody")?;
+            }
+            seconds += 0.5 * start.elapsed().as_secs_f64();
+            let point = point(&pair[0].0, &pair[1].0, seconds);
+            println!(
+                "{{\"scene\":\"{name}\",\"sampler\":\"{}\",\"samples\":{samples},\"rmse_percent\":{:.4},\
+                 \"noise_percent\":{:.4},\"seconds\":{seconds:.4}}}",
+                kind.label, point.percent, point.figure
+            );
+            curve.push(point);
+            samples *= 2;
+        }
+    }
+    Ok(Measured { name, curves })
+}
+
+fn point(a: &Film, b: &Film, seconds: f64) -> Point {
+    let pairs: Vec<(f64, f64)> = luminances(a).into_iter().zip(luminances(b)).collect();
+    let n = pairs.len() as f64;
+    let variance = pairs.iter().map(|(a, b)| 0.5 * (a - b).powi(2)).sum::<f64>() / n;
+    let mean = pairs.iter().map(|(a, b)| 0.5 * (a + b)).sum::<f64>() / n;
+    let figure = |film: &Film| film.noise_percent().unwrap_or(f64::NAN).powi(2);
+    Point {
+        samples: a.n_samples(),
+        percent: 100.0 * variance.sqrt() / mean,
+        figure: (0.5 * (figure(a) + figure(b))).sqrt(),
+        seconds,
+    }
+}
+
+fn world(loaded: &Loaded, width: u32, kind: Kind, seed: u32) -> Result<World, Failure> {
+    let mut description = loaded.description.clone();
+    let render = &mut description.render;
+    render.height = (width * render.height / render.width).max(1);
+    (render.width, render.sampler, render.adaptive) = (width, kind.sampler, kind.adaptive);
+    render.seed = seed;
+    let job = RenderJob {
+        scene: Arc::new(resolve(&description, &loaded.assets)?),
+        width,
+        height: description.render.height,
+        settings: RenderSettings::new(&description.render, AcceleratorKind::default()),
+    };
+    Ok(World::new(job))
+}
+
+fn luminances(film: &Film) -> Vec<f64> {
+    let picture = film.picture();
+    picture.pixels.iter().map(|p| f64::from(luminance(Vec3::from_array(*p)))).collect()
+}
+
+/// The slope of log error over log samples from 16 samples on, by its ends.
+fn slope(curve: &[Point]) -> f64 {
+    let from = curve.iter().find(|point| point.samples == 16);
+    let (Some(from), Some(to)) = (from, curve.last()) else { return f64::NAN };
+    (to.percent / from.percent).ln() / (f64::from(to.samples) / f64::from(from.samples)).ln()
+}
+
+fn report(folder: &Path, options: &Options, all: &[Measured]) -> Result<(), Failure> {
+    let columns: Vec<u32> =
+        (1..=6).map(|k| 4_u32.pow(k)).filter(|n| *n <= options.samples).collect();
+    let mut text = format!(
+        "# Convergence\n\nRoot mean squared error of linear luminance in percent of its mean, for the scenes \
+         of the gallery in pictures {} wide, written by\n\n```sh\ncargo bench --bench convergence -- --width {} \
+         --samples {} --report docs\n```\n\n\
+         The slope is that of log error over log samples from 16 samples on; the gain is the squared \
+         error of \"random\" over that of the row at 64 samples; the last column is the least and the \
+         most that the renderer's own noise figure says, over the truth, which two pictures of so few pixels \
+         tell no better than to a tenth or two.\n\
+         In so small a picture a pixel covers a whole edge of a shadow or a circle of confusion; in one of \
+         full size it does not, and Sobol points gain more.\n\n\
+         ![Error against samples](convergence-samples.svg)\n\n\
+         ![Error against seconds](convergence-seconds.svg)\n\n| scene | sampler |",
+        options.width, options.width, options.samples
+    );
+    for n in &columns {
+        write!(text, " {n} |")?;
+    }
+    text += " slope | gain | seconds | noise figure |\n|---|---|";
+    text += &"---|".repeat(columns.len() + 4);
+    text += "\n";
+    for scene in all {
+        for (kind, curve) in KINDS.iter().zip(&scene.curves) {
+            let at =
+                |curve: &[Point], n: u32| curve.iter().find(|point| point.samples == n).copied();
+            write!(text, "| {} | {} |", scene.name, kind.label)?;
+            for n in &columns {
+                let percent = at(curve, *n).map_or(f64::NAN, |point| point.percent);
+                write!(text, " {percent:.3} |")?;
+            }
+            let gain = at(&scene.curves[0], 64)
+                .zip(at(curve, 64))
+                .map_or(f64::NAN, |(random, this)| (random.percent / this.percent).powi(2));
+            let ratios = curve.iter().skip(2).map(|point| point.figure / point.percent);
+            let (least, most) = ratios.fold((f64::MAX, 0.0_f64), |(a, b), r| (a.min(r), b.max(r)));
+            let seconds = curve.last().map_or(f64::NAN, |point| point.seconds);
+            let slope = slope(curve);
+            writeln!(text, " {slope:.2} | {gain:.1} | {seconds:.1} | {least:.2} to {most:.2} |")?;
+        }
+    }
+    std::fs::write(folder.join("convergence.md"), text)?;
+    let panels = |x: fn(&Point) -> f64| -> Vec<plot::Panel> {
+        let curve = |curve: &Vec<Point>| curve.iter().map(|p| [x(p), p.percent]).collect();
+        all.iter()
+            .map(|scene| plot::Panel {
+                title: scene.name,
+                curves: scene.curves.each_ref().map(curve),
+            })
+            .collect()
+    };
+    let labels = KINDS.map(|kind| kind.label);
+    let samples = plot::draw(&panels(|p| f64::from(p.samples)), labels, "samples a pixel");
+    std::fs::write(folder.join("convergence-samples.svg"), samples)?;
+    let seconds = plot::draw(&panels(|p| p.seconds), labels, "seconds");
+    std::fs::write(folder.join("convergence-seconds.svg"), seconds)?;
+    Ok(())
+}

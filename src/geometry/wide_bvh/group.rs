@@ -1,0 +1,179 @@
+//! Sixteen rays of a packet: their test against one box, and against one triangle after another.
+
+use crate::geometry::lanes::{Isa, Lanes};
+use crate::geometry::wide_bvh::stream::Take;
+use crate::geometry::wide_bvh::{BLOCK, Block, Node, WideBvh, leaf};
+use crate::math::RayBatch;
+
+/// Rays of a group.
+pub(super) const LANES: usize = 16;
+
+/// Sixteen rays. Lanes without a ray, or whose ray is done, end below 0.
+pub(super) struct Group<I: Isa> {
+    pub(super) origin: [I::F16; 3],
+    pub(super) reciprocal: [I::F16; 3],
+    /// Origins, moved outwards by the bound of rounding errors, times the reciprocals.
+    near_origin: [I::F16; 3],
+    far_origin: [I::F16; 3],
+    /// Where directions are below 0.
+    pub(super) negative: [u32; 3],
+    /// Where x is a direction's largest component, and where y is; elsewhere z.
+    largest: [u32; 2],
+    shear: [I::F16; 2],
+    speed: I::F16,
+    pace: I::F16,
+    pub(super) limit: I::F16,
+    /// The greatest limit.
+    pub(super) farthest: f32,
+}
+
+impl<I: Isa> Group<I> {
+    /// No rays.
+    #[inline(always)]
+    pub(super) fn idle() -> Self {
+        let zero = I::F16::splat(0.0);
+        Self {
+            origin: [zero; 3],
+            reciprocal: [zero; 3],
+            near_origin: [zero; 3],
+            far_origin: [zero; 3],
+            negative: [0; 3],
+            largest: [0; 2],
+            shear: [zero; 2],
+            speed: zero,
+            pace: zero,
+            limit: zero,
+            farthest: -1.0,
+        }
+    }
+
+    /// What box tests need along one axis.
+    #[inline(always)]
+    pub(super) fn set_axis(&mut self, axis: usize, origin: I::F16, direction: I::F16, pad: f32) {
+        let zero = I::F16::splat(0.0);
+        let negative = direction.lt(zero);
+        let smallest = I::F16::splat(WideBvh::SMALLEST);
+        let smallest = smallest.blend(zero.sub(smallest), negative);
+        let size = direction.max(zero.sub(direction));
+        let is_tiny = size.lt(I::F16::splat(WideBvh::SMALLEST));
+        let reciprocal = I::F16::splat(1.0).div(direction.blend(smallest, is_tiny));
+        let outwards = I::F16::splat(pad).blend(I::F16::splat(-pad), negative);
+        self.origin[axis] = origin;
+        self.reciprocal[axis] = reciprocal;
+        self.near_origin[axis] = origin.add(outwards).mul(reciprocal);
+        self.far_origin[axis] = origin.sub(outwards).mul(reciprocal);
+        self.negative[axis] = negative;
+    }
+
+    /// What triangle tests need.
+    #[inline(always)]
+    pub(super) fn set_axes(&mut self, rays: &RayBatch, first: usize, n: usize) {
+        let x = lanes::<I::F16>(&rays.direction[0], first, n);
+        let y = lanes::<I::F16>(&rays.direction[1], first, n);
+        let z = lanes::<I::F16>(&rays.direction[2], first, n);
+        let zero = I::F16::splat(0.0);
+        let (size_x, size_y) = (x.max(zero.sub(x)), y.max(zero.sub(y)));
+        let size_z = z.max(zero.sub(z));
+        // As for a single ray: x where it is above both, y where it is not below x and above z.
+        let is_x = size_y.lt(size_x) & size_z.lt(size_x);
+        let is_y = size_x.le(size_y) & size_z.lt(size_y);
+        self.largest = [is_x, is_y];
+        let [along_x, along_y, speed] = self.turned([x, y, z]);
+        self.shear = [along_x.div(speed), along_y.div(speed)];
+        self.speed = speed;
+        self.pace = I::F16::splat(1.0).div(speed);
+    }
+
+    /// Coordinates in the order of axes that each ray has for triangle tests.
+    #[inline(always)]
+    fn turned(&self, [x, y, z]: [I::F16; 3]) -> [I::F16; 3] {
+        let [is_x, is_y] = self.largest;
+        if is_x | is_y == 0 {
+            [x, y, z]
+        } else if is_y == I::F16::ALL {
+            [z, x, y]
+        } else if is_x == I::F16::ALL {
+            [y, z, x]
+        } else {
+            [
+                x.blend(z, is_y).blend(y, is_x),
+                y.blend(x, is_y).blend(z, is_x),
+                z.blend(y, is_y).blend(x, is_x),
+            ]
+        }
+    }
+
+    /// Whether some ray touches a box before its limit.
+    #[inline(always)]
+    pub(super) fn touches(&self, node: &Node, child: usize) -> bool {
+        let (mut enter, mut leave) = (I::F16::splat(0.0), self.limit);
+        for axis in 0..3 {
+            let lower = I::F16::splat(node.bounds[axis][child]);
+            let upper = I::F16::splat(node.bounds[axis + 3][child]);
+            let (near, far) = match self.negative[axis] {
+                0 => (lower, upper),
+                negative if negative == I::F16::ALL => (upper, lower),
+                negative => (lower.blend(upper, negative), upper.blend(lower, negative)),
+            };
+            enter = near.mul_sub(self.reciprocal[axis], self.near_origin[axis]).max(enter);
+            leave = far.mul_sub(self.reciprocal[axis], self.far_origin[axis]).min(leave);
+        }
+        enter.le(leave) != 0
+    }
+
+    /// Offers what the rays meet in a block; tells whether a limit changed.
+    #[inline(always)]
+    pub(super) fn visit<T: Take>(&mut self, block: &Block, first: usize, hits: &mut T) -> bool {
+        let mut is_changed = false;
+        for corner in 0..BLOCK {
+            let id = block.ids[corner];
+            if corner > 0 && id == block.ids[corner - 1] {
+                break;
+            }
+            let Some((mut mask, t)) = self.hits::<T>(block, corner) else { continue };
+            let (mut parameters, mut limits) = ([0.0; LANES], [0.0; LANES]);
+            t.store(&mut parameters);
+            self.limit.store(&mut limits);
+            while mask != 0 {
+                let lane = mask.trailing_zeros() as usize;
+                mask &= mask - 1;
+                limits[lane] = hits.take(first + lane, parameters[lane], id);
+            }
+            self.limit = I::F16::load(&limits);
+            is_changed = true;
+        }
+        is_changed
+    }
+
+    /// Where the rays meet one triangle of a block before their limits.
+    #[inline(always)]
+    fn hits<T: Take>(&self, block: &Block, lane: usize) -> Option<(u32, I::F16)> {
+        let [a, b, c] = &block.corners;
+        let corners = [
+            leaf::sheared(self.relative(a, lane), self.shear),
+            leaf::sheared(self.relative(b, lane), self.shear),
+            leaf::sheared(self.relative(c, lane), self.shear),
+        ];
+        leaf::hits::<_, T>(corners, self.speed, self.pace, self.limit)
+    }
+
+    #[inline(always)]
+    fn relative(&self, corner: &[[f32; BLOCK]; 3], lane: usize) -> [I::F16; 3] {
+        self.turned([
+            I::F16::splat(corner[0][lane]).sub(self.origin[0]),
+            I::F16::splat(corner[1][lane]).sub(self.origin[1]),
+            I::F16::splat(corner[2][lane]).sub(self.origin[2]),
+        ])
+    }
+}
+
+/// Lanes `first..first + n`; those beyond repeat the first.
+#[inline(always)]
+pub(super) fn lanes<F: Lanes>(from: &[f32], first: usize, n: usize) -> F {
+    if n >= LANES {
+        return F::load(&from[first..]);
+    }
+    let mut padded = [from[first]; LANES];
+    padded[..n].copy_from_slice(&from[first..first + n]);
+    F::load(&padded)
+}
