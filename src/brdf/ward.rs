@@ -8,11 +8,11 @@
 //! and A. Dür, "A New Ward BRDF Model with Bounded Albedo", CGF 29(4), 2010; B. Walter, "Notes on
 //! the Ward BRDF", Cornell PCG-05-06, 2005.
 
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::PI;
 
 use glam::Vec3;
 
-use crate::math::portable;
+use crate::math::elementary;
 
 /// Which normalisation is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +38,7 @@ pub struct Ward {
 
 impl Ward {
     /// Value of the lobe in 1/sr; reciprocal; 0 unless both directions are above the surface.
+    #[inline(always)]
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> f32 {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return 0.0;
@@ -48,7 +49,7 @@ impl Ward {
             WardForm::Bounded => {
                 let z2 = half.z * half.z;
                 let exponent = -self.slope_squared(half) / z2;
-                portable::exp(exponent) * half.length_squared() / (PI * area * (z2 * z2))
+                elementary::exp(exponent) * half.length_squared() / (PI * area * (z2 * z2))
             }
             WardForm::Original | WardForm::Duer => {
                 let cosines = wo.z * wi.z;
@@ -60,13 +61,14 @@ impl Ward {
 
     /// A direction towards the light for two numbers in [0, 1), with density [`Ward::pdf`]; `None`
     /// where the sampled half vector sends it below the surface (a share that the density lacks).
+    #[inline(always)]
     pub fn sample(&self, wo: Vec3, [u, v]: [f32; 2]) -> Option<Vec3> {
-        let (sin, cos) = portable::sin_cos(TAU * u);
+        let (sin, cos) = elementary::sin_cos_turns(u);
         let along = Vec3::new(self.alpha_x * cos, self.alpha_y * sin, 0.0);
         let length = along.length();
         let (x, y) = (along.x / length, along.y / length);
         let k = (x / self.alpha_x).powi(2) + (y / self.alpha_y).powi(2);
-        let drop = -portable::ln(1.0 - v);
+        let drop = -elementary::ln_of_share(1.0 - v);
         let half = match self.form {
             WardForm::Bounded => {
                 let tan = (drop / k).sqrt();
@@ -89,6 +91,7 @@ impl Ward {
 
     /// Density of [`Ward::sample`] per solid angle of `wi`. Integrates to less than 1 where half
     /// vectors are rejected.
+    #[inline(always)]
     pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return 0.0;
@@ -98,7 +101,7 @@ impl Ward {
         let of_half = match self.form {
             WardForm::Bounded => {
                 let z2 = half.z * half.z;
-                portable::exp(-self.slope_squared(half) / z2) / (PI * area * z2 * half.z)
+                elementary::exp(-self.slope_squared(half) / z2) / (PI * area * z2 * half.z)
             }
             WardForm::Original | WardForm::Duer => self.cap_lobe(half) / (PI * area),
         };
@@ -106,13 +109,15 @@ impl Ward {
     }
 
     /// (h.x / alpha_x)² + (h.y / alpha_y)².
+    #[inline(always)]
     fn slope_squared(&self, half: Vec3) -> f32 {
         let (x, y) = (half.x / self.alpha_x, half.y / self.alpha_y);
         x * x + y * y
     }
 
     /// Ward's exponential of a unit half vector.
+    #[inline(always)]
     fn cap_lobe(&self, half: Vec3) -> f32 {
-        portable::exp(-2.0 * self.slope_squared(half) / (1.0 + half.z))
+        elementary::exp(-2.0 * self.slope_squared(half) / (1.0 + half.z))
     }
 }

@@ -32,6 +32,7 @@ pub use mesh_tree::{MeshTree, TracedMesh};
 pub use nearest::Hit;
 pub use shape::Shape;
 pub use surface::Surface;
+pub(crate) use surface::{HitBlock, SurfaceBlock};
 
 /// How rays find what they meet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -2,12 +2,13 @@
 
 use glam::Vec3;
 
-use super::{Path, TileRenderer, dimension, power};
-use crate::brdf::Ward;
+use super::{Block, Path, TileRenderer, dimension, power};
+use crate::brdf::{Ward, WardForm};
 use crate::color::{Rgb, luminance};
 use crate::math::Ray;
-use crate::render::shading::Shading;
-use crate::scene::light::{Light, LightSample};
+use crate::math::vectorized::{BLOCK, Lane3, set_vec3, vec3, vectorized};
+use crate::render::shading::{Coat, Shading, ShadingBlock};
+use crate::scene::light::{Light, LightBlock, LightSample};
 
 /// Shadow rays to `[[lights]]` at a surface, at most, where the lobe is not sampled as well.
 const LIGHTS_AT_ONCE: usize = 8;
@@ -62,6 +63,41 @@ impl LightChoice {
 }
 
 impl TileRenderer<'_> {
+    /// [`TileRenderer::sample_lights`] for the points of a block.
+    pub(super) fn light_block(&mut self, coat: &Coat<'_>, block: &Block) {
+        let world = self.world;
+        let lights = &world.job.scene.lights;
+        let material = coat.material;
+        if lights.len() > LIGHTS_AT_ONCE {
+            for i in 0..block.n {
+                self.sample_lights(block.paths[i], &block.shading.shading(coat, i));
+            }
+            return;
+        }
+        let depth = block.paths[0].depth;
+        let gloss = (material.specular != Rgb::ZERO).then_some((material.specular, material.lobe));
+        let mut u = [[0.0; BLOCK]; 2];
+        for (index, light) in lights.iter().enumerate() {
+            let purpose = dimension::FIRST_LIGHT + index as u32;
+            block.numbers.pairs(dimension::of(depth, purpose), self.joint_net(depth), &mut u);
+            light.sample_block(&block.shading.surface.point, &u, &mut self.samples);
+            let mut contributions = block.throughput;
+            contribute(&block.shading, &self.samples, gloss, &mut contributions);
+            let slots = &block.slots;
+            self.shadows.append(block.n, slots, &block.shading, &self.samples, &contributions);
+        }
+        if gloss.is_some() {
+            self.lights.take_all(lights.len());
+            for i in 0..block.n {
+                let shading = block.shading.shading(coat, i);
+                let wo = shading.frame.local_from_world(shading.wo);
+                if wo.z > 0.0 {
+                    self.probe_lights(block.paths[i], &shading, wo);
+                }
+            }
+        }
+    }
+
     /// Direct light of `[[lights]]`: a point of each chosen light, and a direction of the glossy
     /// lobe. Where both can find the light, each counts by its share.
     pub(super) fn sample_lights(&mut self, path: Path, shading: &Shading<'_>) {
@@ -173,6 +209,63 @@ impl TileRenderer<'_> {
             self.shadows.push(path.slot, shading, &sample, path.throughput * value * sample.weight);
         }
         total
+    }
+}
+
+/// What a light brings to the eye from each point of a block if nothing is in its way: to be
+/// multiplied with what is there.
+#[inline(always)]
+fn each_contribution<const IS_GLOSSY: bool>(
+    block: &ShadingBlock,
+    samples: &LightBlock,
+    (specular, lobe): (Rgb, Ward),
+    throughput: &mut Lane3,
+) {
+    for i in 0..BLOCK {
+        let direction = vec3(&samples.direction, i);
+        let frame = block.frame(i);
+        let wi = frame.local_from_world(direction);
+        let mut value = vec3(&block.diffuse, i) / std::f32::consts::PI;
+        if IS_GLOSSY {
+            let wo = frame.local_from_world(vec3(&block.wo, i));
+            let pdf = samples.pdf[i];
+            let share = power(pdf, lobe.pdf(wo, wi));
+            let gloss = specular * (lobe.eval(wo, wi) * share);
+            value += if wo.z > 0.0 { gloss } else { Rgb::ZERO };
+        }
+        let is_above = vec3(&block.normal, i).dot(direction) > 0.0 && frame.z.dot(direction) > 0.0;
+        let light = vec3(throughput, i) * value * vec3(&samples.weight, i) * wi.z;
+        set_vec3(throughput, i, if is_above { light } else { Rgb::ZERO });
+    }
+}
+
+vectorized! {
+    fn contribute(
+        block: &ShadingBlock,
+        samples: &LightBlock,
+        gloss: Option<(Rgb, Ward)>,
+        throughput: &mut Lane3,
+    ) {
+        let Some((specular, lobe)) = gloss else {
+            let nothing = Ward { form: WardForm::Bounded, alpha_x: 1.0, alpha_y: 1.0 };
+            return each_contribution::<false>(block, samples, (Rgb::ZERO, nothing), throughput);
+        };
+        // The form is spelled out so that it is known within the loop.
+        let of_form = |form: WardForm| (specular, Ward { form, ..lobe });
+        match lobe.form {
+            WardForm::Original => {
+                let gloss = of_form(WardForm::Original);
+                each_contribution::<true>(block, samples, gloss, throughput);
+            }
+            WardForm::Duer => {
+                let gloss = of_form(WardForm::Duer);
+                each_contribution::<true>(block, samples, gloss, throughput);
+            }
+            WardForm::Bounded => {
+                let gloss = of_form(WardForm::Bounded);
+                each_contribution::<true>(block, samples, gloss, throughput);
+            }
+        }
     }
 }
 

@@ -1,0 +1,176 @@
+//! Samples of one light for a block of points, in lanes.
+
+use glam::Vec3;
+
+use super::way::Way;
+use super::{Emitter, Light, meet_disk, meet_rectangle, sphere};
+use crate::color::Rgb;
+use crate::math::vectorized::{BLOCK, Lane, Lane3, NO_LANES, set_vec3, vec3, vectorized};
+use crate::math::{Ray, RayBlock};
+
+/// A [`LightSample`](super::LightSample) for each point of a block.
+#[derive(Clone, Debug)]
+pub(crate) struct LightBlock {
+    pub(crate) direction: Lane3,
+    pub(crate) reach: Lane3,
+    /// Zero where the light has none.
+    pub(crate) normal: Lane3,
+    /// Zero where nothing arrives.
+    pub(crate) weight: Lane3,
+    /// Infinite where no other ray can find the light.
+    pub(crate) pdf: Lane<f32>,
+    /// 1, or infinite for what is in the sky.
+    pub(crate) t_max: f32,
+}
+
+impl LightBlock {
+    /// Nothing yet.
+    pub(crate) const EMPTY: Self = Self {
+        direction: NO_LANES,
+        reach: NO_LANES,
+        normal: NO_LANES,
+        weight: NO_LANES,
+        pdf: [0.0; BLOCK],
+        t_max: 1.0,
+    };
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, way: Way, radiance: Rgb) {
+        set_vec3(&mut self.direction, i, way.direction);
+        set_vec3(&mut self.reach, i, way.reach);
+        set_vec3(&mut self.normal, i, way.normal);
+        let weight = radiance / way.pdf;
+        set_vec3(&mut self.weight, i, if way.pdf > 0.0 { weight } else { Vec3::ZERO });
+        self.pdf[i] = way.pdf;
+    }
+}
+
+impl Light {
+    /// Whether a ray can meet it.
+    pub(crate) fn has_extent(&self) -> bool {
+        match self.emitter {
+            Emitter::Rectangle { .. }
+            | Emitter::Disk { .. }
+            | Emitter::Sphere { .. }
+            | Emitter::SunCap { .. } => true,
+            Emitter::Point { .. } | Emitter::Spot { .. } | Emitter::Sun { .. } => false,
+        }
+    }
+
+    /// The parameters of [`Light::intersect`] for a block of rays; not above 0 where it is not met.
+    pub(crate) fn intersect_block(&self, rays: &RayBlock, t: &mut Lane<f32>) {
+        match self.emitter {
+            Emitter::Rectangle { .. } => meet_rectangles(&self.emitter, rays, t),
+            Emitter::Disk { .. } => meet_disks(&self.emitter, rays, t),
+            Emitter::Sphere { .. } => meet_spheres(&self.emitter, rays, t),
+            Emitter::SunCap { .. } => {
+                for (i, t) in t.iter_mut().enumerate() {
+                    let ray = Ray::new(vec3(&rays.origin, i), vec3(&rays.direction, i));
+                    *t = self.intersect(&ray).map_or(f32::NAN, |(t, _)| t);
+                }
+            }
+            Emitter::Point { .. } | Emitter::Spot { .. } | Emitter::Sun { .. } => {
+                *t = [f32::NAN; BLOCK];
+            }
+        }
+    }
+
+    /// Emitted radiance, of a light with an extent.
+    pub(crate) fn radiance(&self) -> Rgb {
+        match self.emitter {
+            Emitter::Rectangle { radiance, .. }
+            | Emitter::Disk { radiance, .. }
+            | Emitter::Sphere { radiance, .. }
+            | Emitter::SunCap { radiance, .. } => radiance,
+            Emitter::Point { .. } | Emitter::Spot { .. } | Emitter::Sun { .. } => Rgb::ZERO,
+        }
+    }
+
+    /// [`Light::sample`] from each point.
+    pub(crate) fn sample_block(&self, from: &Lane3, u: &[Lane<f32>; 2], samples: &mut LightBlock) {
+        samples.t_max = 1.0;
+        match self.emitter {
+            Emitter::Rectangle { .. } => rectangle_samples(&self.emitter, from, u, samples),
+            Emitter::Disk { .. } => disk_samples(&self.emitter, from, u, samples),
+            Emitter::Sphere { .. } => sphere_samples(&self.emitter, from, u, samples),
+            Emitter::Point { .. }
+            | Emitter::Spot { .. }
+            | Emitter::Sun { .. }
+            | Emitter::SunCap { .. } => {
+                for i in 0..BLOCK {
+                    set_vec3(&mut samples.weight, i, Vec3::ZERO);
+                    let Some(sample) = self.sample(vec3(from, i), [u[0][i], u[1][i]]) else {
+                        continue;
+                    };
+                    set_vec3(&mut samples.direction, i, sample.direction);
+                    set_vec3(&mut samples.reach, i, sample.reach);
+                    set_vec3(&mut samples.normal, i, Vec3::ZERO);
+                    set_vec3(&mut samples.weight, i, sample.weight);
+                    samples.pdf[i] = sample.pdf.unwrap_or(f32::INFINITY);
+                    samples.t_max = sample.t_max;
+                }
+            }
+        }
+    }
+}
+
+vectorized! {
+    fn meet_rectangles(emitter: &Emitter, rays: &RayBlock, t: &mut Lane<f32>) {
+        let Emitter::Rectangle { center, frame, half, .. } = *emitter else { return };
+        for i in 0..BLOCK {
+            let (origin, direction) = (vec3(&rays.origin, i), vec3(&rays.direction, i));
+            t[i] = meet_rectangle(origin, direction, center, &frame, half);
+        }
+    }
+    fn meet_disks(emitter: &Emitter, rays: &RayBlock, t: &mut Lane<f32>) {
+        let Emitter::Disk { center, frame, radius, .. } = *emitter else { return };
+        for i in 0..BLOCK {
+            let (origin, direction) = (vec3(&rays.origin, i), vec3(&rays.direction, i));
+            t[i] = meet_disk(origin, direction, center, &frame, radius);
+        }
+    }
+    fn meet_spheres(emitter: &Emitter, rays: &RayBlock, t: &mut Lane<f32>) {
+        let Emitter::Sphere { center, radius, .. } = *emitter else { return };
+        for i in 0..BLOCK {
+            let (origin, direction) = (vec3(&rays.origin, i), vec3(&rays.direction, i));
+            let (is_met, at, _) = sphere::meeting(origin, direction, center, radius);
+            t[i] = if is_met { at } else { f32::NAN };
+        }
+    }
+    fn rectangle_samples(
+        emitter: &Emitter,
+        from: &Lane3,
+        u: &[Lane<f32>; 2],
+        samples: &mut LightBlock,
+    ) {
+        let Emitter::Rectangle { center, frame, half, radiance } = *emitter else { return };
+        for i in 0..BLOCK {
+            let way = Way::to_rectangle(vec3(from, i), [u[0][i], u[1][i]], center, &frame, half);
+            samples.set(i, way, radiance);
+        }
+    }
+    fn disk_samples(
+        emitter: &Emitter,
+        from: &Lane3,
+        u: &[Lane<f32>; 2],
+        samples: &mut LightBlock,
+    ) {
+        let Emitter::Disk { center, frame, radius, radiance } = *emitter else { return };
+        for i in 0..BLOCK {
+            let way = Way::to_disk(vec3(from, i), [u[0][i], u[1][i]], center, &frame, radius);
+            samples.set(i, way, radiance);
+        }
+    }
+    fn sphere_samples(
+        emitter: &Emitter,
+        from: &Lane3,
+        u: &[Lane<f32>; 2],
+        samples: &mut LightBlock,
+    ) {
+        let Emitter::Sphere { center, radius, radiance } = *emitter else { return };
+        for i in 0..BLOCK {
+            let way = Way::to_sphere(vec3(from, i), [u[0][i], u[1][i]], center, radius);
+            samples.set(i, way, radiance);
+        }
+    }
+}
