@@ -140,6 +140,23 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
     (sign(a, quarter), sign(b, quarter.wrapping_add(1)))
 }
 
+/// The largest integer that is not above x; 0 has no sign.
+#[inline(always)]
+pub fn floor(x: f64) -> f64 {
+    const ROUND: f64 = 6_755_399_441_055_744.0;
+    const ALL_INTEGERS: f64 = 2_251_799_813_685_248.0;
+    let nearest = (x + ROUND) - ROUND;
+    let below = if nearest > x { nearest - 1.0 } else { nearest };
+    if x.abs() < ALL_INTEGERS { below } else { x }
+}
+
+/// sin(π x) for any finite x, within 1e-15.
+#[inline(always)]
+pub fn sin_half_turns(x: f64) -> f64 {
+    let within = x - 2.0 * floor(0.5 * x + 0.5);
+    sin_cos(PI * within).0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -197,6 +214,21 @@ mod tests {
             (sin - portable::sin_f64(x)).abs().max((cos - portable::cos_f64(x)).abs())
         });
         assert!(turns < 1e-15, "{turns}");
+    }
+
+    #[test]
+    fn integers_below_and_sines_of_half_turns() {
+        for x in [0.0, 0.5, -0.5, 1.0, -1.0, 2.999_999, -7.25, 1e15 + 0.5, -1e15 - 0.5, 1e300] {
+            assert_eq!(floor(x), x.floor(), "{x}");
+        }
+        for (x, expected) in [(0.5, 1.0), (-0.5, -1.0), (100.5, 1.0), (1e9 + 1.5, -1.0), (3e15, 0.0)] {
+            assert!((sin_half_turns(x) - expected).abs() < 1e-15, "{x}");
+        }
+        let error = worst(|s| {
+            let x = 6.0 * s - 3.0;
+            (sin_half_turns(x) - portable::sin_f64(PI * x)).abs()
+        });
+        assert!(error < 1e-15, "{error}");
     }
 
     #[test]

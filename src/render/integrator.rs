@@ -101,6 +101,8 @@ pub(super) struct TileRenderer<'a> {
     next_rays: RayBatch,
     next_paths: Vec<Path>,
     groups: Groups,
+    /// Paths that have met nothing.
+    lost: Vec<u32>,
     shadows: Shadows,
     lights: LightChoice,
     samples: LightBlock,
@@ -132,6 +134,7 @@ impl<'a> TileRenderer<'a> {
             next_rays: RayBatch::default(),
             next_paths: Vec::new(),
             groups: Groups::new(world),
+            lost: Vec::new(),
             shadows: Shadows::default(),
             lights: LightChoice::default(),
             samples: LightBlock::EMPTY,
@@ -235,14 +238,34 @@ impl<'a> TileRenderer<'a> {
                     self.groups.push(world, index as u32, hit);
                     continue;
                 }
-                let direction = self.rays.ray(index).direction.normalize();
-                let share = path.scattered.map_or(1.0, |last| {
-                    power(last.pdf, world.emission.sky_pdf(last.total, direction))
-                });
-                self.add(*path, world.job.scene.background_radiance(direction) * share);
+                self.lost.push(index as u32);
             }
         }
         self.groups.sort();
+        self.add_background();
+    }
+
+    /// Adds the background to the paths that have left the scene.
+    fn add_background(&mut self) {
+        let world = self.world;
+        let (mut directions, mut radiances) = (NO_LANES, NO_LANES);
+        for start in (0..self.lost.len()).step_by(BLOCK) {
+            let n = BLOCK.min(self.lost.len() - start);
+            for i in 0..n {
+                let index = self.lost[start + i] as usize;
+                set_vec3(&mut directions, i, self.rays.ray(index).direction.normalize());
+            }
+            world.job.scene.background_radiances(&directions, &mut radiances);
+            for i in 0..n {
+                let path = self.paths[self.lost[start + i] as usize];
+                let direction = vec3(&directions, i);
+                let share = path.scattered.map_or(1.0, |last| {
+                    power(last.pdf, world.emission.sky_pdf(last.total, direction))
+                });
+                self.add(path, vec3(&radiances, i) * share);
+            }
+        }
+        self.lost.clear();
     }
 
     /// Number of the nearest visible light before what each of `n` rays meets; suns are behind

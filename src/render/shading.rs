@@ -73,8 +73,7 @@ impl<'a> Coat<'a> {
     fn bent(&self, surface: &Surface) -> Vec3 {
         let n = surface.object_normal;
         let Some((texture, height)) = self.material.bump else { return n };
-        let g = self.texture(texture).luminance_gradient(&lookup(surface));
-        (n - height * (g - g.dot(n) * n)).normalize_or(n)
+        bent(n, height, self.texture(texture).luminance_gradient(&lookup(surface)))
     }
 
     /// Whether texture coordinates are looked at.
@@ -87,6 +86,11 @@ impl<'a> Coat<'a> {
 
 fn lookup(at: &Surface) -> Lookup {
     Lookup { point: at.object_point, uv: at.uv, uv_gradients: at.uv_gradients }
+}
+
+/// A normal bent by the gradient of a texture's luminance.
+fn bent(n: Vec3, height: f32, g: Vec3) -> Vec3 {
+    (n - height * (g - g.dot(n) * n)).normalize_or(n)
 }
 
 /// The geometric normal on the viewer's side, and the frame around the shading normal.
@@ -176,19 +180,39 @@ impl ShadingBlock {
     pub(super) fn fill(&mut self, coat: &Coat<'_>, hits: &HitBlock) {
         let geometry = &coat.world.geometry;
         geometry.surfaces(coat.object, hits, coat.needs_uv(), &mut self.surface);
-        if coat.material.bump.is_some() {
-            for i in 0..BLOCK {
-                let bent = coat.bent(&self.surface.surface(i));
-                set_vec3(&mut self.surface.object_normal, i, bent);
-            }
-        }
+        self.bend(coat);
         turn(coat.transform, coat.tangent, hits, self);
         let ColorSource { color, texture } = coat.material.diffuse;
+        let points = &self.surface.object_point;
+        let Some(texture) = texture.map(|id| coat.texture(id)) else {
+            self.diffuse = color.to_array().map(|channel| [channel; BLOCK]);
+            return;
+        };
+        if texture.eval_block(points, &mut self.diffuse) {
+            for (lane, channel) in self.diffuse.iter_mut().zip(color.to_array()) {
+                *lane = lane.map(|x| channel * x);
+            }
+        } else {
+            for i in 0..BLOCK {
+                set_vec3(&mut self.diffuse, i, coat.diffuse(&self.surface.surface(i)));
+            }
+        }
+    }
+
+    /// Bends the shading normals where there are bumps.
+    fn bend(&mut self, coat: &Coat<'_>) {
+        let Some((texture, height)) = coat.material.bump else { return };
+        let texture = coat.texture(texture);
+        let mut gradients = NO_LANES;
+        let is_known = texture.luminance_gradients(&self.surface.object_point, &mut gradients);
         for i in 0..BLOCK {
-            let is_textured = texture.is_some();
-            let diffuse =
-                if is_textured { coat.diffuse(&self.surface.surface(i)) } else { color };
-            set_vec3(&mut self.diffuse, i, diffuse);
+            let surface = self.surface.surface(i);
+            let g = if is_known {
+                vec3(&gradients, i)
+            } else {
+                texture.luminance_gradient(&lookup(&surface))
+            };
+            set_vec3(&mut self.surface.object_normal, i, bent(surface.object_normal, height, g));
         }
     }
 
