@@ -61,32 +61,36 @@ impl Ward {
 
     /// A direction towards the light for two numbers in [0, 1), with density [`Ward::pdf`]; `None`
     /// where the sampled half vector sends it below the surface (a share that the density lacks).
+    pub fn sample(&self, wo: Vec3, u: [f32; 2]) -> Option<Vec3> {
+        let (wi, is_above) = self.mirrored(wo, u);
+        is_above.then_some(wi)
+    }
+
+    /// The direction of [`Ward::sample`], and whether it is one.
     #[inline(always)]
-    pub fn sample(&self, wo: Vec3, [u, v]: [f32; 2]) -> Option<Vec3> {
+    pub(crate) fn mirrored(&self, wo: Vec3, [u, v]: [f32; 2]) -> (Vec3, bool) {
         let (sin, cos) = elementary::sin_cos_turns(u);
         let along = Vec3::new(self.alpha_x * cos, self.alpha_y * sin, 0.0);
         let length = along.length();
         let (x, y) = (along.x / length, along.y / length);
-        let k = (x / self.alpha_x).powi(2) + (y / self.alpha_y).powi(2);
+        let (slope_x, slope_y) = (x / self.alpha_x, y / self.alpha_y);
+        let k = slope_x * slope_x + slope_y * slope_y;
         let drop = -elementary::ln_of_share(1.0 - v);
-        let half = match self.form {
+        let (half, is_up) = match self.form {
             WardForm::Bounded => {
                 let tan = (drop / k).sqrt();
-                Vec3::new(x * tan, y * tan, 1.0).normalize()
+                (Vec3::new(x * tan, y * tan, 1.0).normalize(), true)
             }
             WardForm::Original | WardForm::Duer => {
                 // exp(-2 (1 - cos) k): exponential in 1 - cos, cut at the horizon.
                 let one_minus_cos = drop / (2.0 * k);
-                if one_minus_cos >= 1.0 {
-                    return None;
-                }
                 let sin = (one_minus_cos * (2.0 - one_minus_cos)).sqrt();
-                Vec3::new(x * sin, y * sin, 1.0 - one_minus_cos)
+                (Vec3::new(x * sin, y * sin, 1.0 - one_minus_cos), one_minus_cos < 1.0)
             }
         };
         let cos_half = wo.dot(half);
         let wi = 2.0 * cos_half * half - wo;
-        (cos_half > 0.0 && wi.z > 0.0).then_some(wi)
+        (wi, is_up && cos_half > 0.0 && wi.z > 0.0)
     }
 
     /// Density of [`Ward::sample`] per solid angle of `wi`. Integrates to less than 1 where half

@@ -214,15 +214,21 @@ impl Geometry {
         &self,
         rays: &RayBatch,
         clear: impl Fn(Hit) -> Option<Rgb>,
-        is_clear: impl Fn(u32) -> bool,
+        is_clear: impl Fn(u32) -> bool + Copy,
         shares: &mut Vec<Rgb>,
     ) {
         let mut blocked = Vec::new();
         self.occluded_by(rays, |object| !is_clear(object), &mut blocked);
+        // Most rays meet nothing that is clear.
+        let mut is_tinted = Vec::new();
+        self.occluded_by(rays, &is_clear, &mut is_tinted);
         shares.clear();
         shares.extend(blocked.iter().enumerate().map(|(i, is_blocked)| {
             if *is_blocked {
                 return Rgb::ZERO;
+            }
+            if !is_tinted[i] {
+                return Rgb::ONE;
             }
             let ray = rays.ray(i);
             let mut share = Rgb::ONE;

@@ -110,11 +110,13 @@ impl RayBatch {
 
     /// The rays at these places, in their order.
     pub fn gathered(&self, places: &[u32]) -> Self {
-        let mut gathered = Self::default();
-        for place in places {
-            gathered.push(self.ray(*place as usize));
+        let pick = |column: &Vec<f32>| places.iter().map(|i| column[*i as usize]).collect();
+        Self {
+            origin: self.origin.each_ref().map(pick),
+            direction: self.direction.each_ref().map(pick),
+            t_max: pick(&self.t_max),
+            source: places.iter().map(|i| self.source[*i as usize]).collect(),
         }
-        gathered
     }
 
     /// Number of rays.

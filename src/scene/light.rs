@@ -8,19 +8,17 @@ mod estimate;
 mod sphere;
 mod way;
 
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::TAU;
 
 use glam::{DVec3, Vec3};
 
 use crate::color::Rgb;
-use crate::math::spherical_ellipse::SphericalEllipse;
-use crate::math::spherical_rectangle::SphericalRectangle;
 use crate::math::{Frame, Ray, portable, warp};
 
 pub(crate) use block::LightBlock;
 pub use estimate::LightEstimate;
 
-use way::Way;
+use way::{Way, disk_pdf, rectangle_pdf, sphere_pdf};
 
 /// A source of light. Never blocks light; seen by the camera only if `visible`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -190,27 +188,14 @@ impl Light {
     /// Density per solid angle with which [`Light::sample`] finds what a ray from `from` along the
     /// unit `direction` meets at distance `t`; 0 for lights without extent.
     pub fn pdf(&self, from: Vec3, direction: Vec3, t: f32) -> f32 {
-        let of_area = |normal: Vec3, area: f32| {
-            let cos = -normal.dot(direction);
-            if cos > 0.0 { t * t / (cos * area) } else { 0.0 }
-        };
         match self.emitter {
             Emitter::Rectangle { center, frame, half, .. } => {
-                match spherical_rectangle(half, seen_from(from, center, &frame)) {
-                    Some(whole) => (1.0 / whole.solid_angle) as f32,
-                    None => of_area(frame.z, 4.0 * half[0] * half[1]),
-                }
+                rectangle_pdf(from, direction, t, center, &frame, half)
             }
             Emitter::Disk { center, frame, radius, .. } => {
-                match spherical_ellipse(radius, seen_from(from, center, &frame)) {
-                    Some(cone) => cone.pdf(in_frame(&frame, direction.as_dvec3())) as f32,
-                    None => of_area(frame.z, PI * radius * radius),
-                }
+                disk_pdf(from, direction, t, center, &frame, radius)
             }
-            Emitter::Sphere { center, radius, .. } => {
-                let cap = sphere::cap(from, center, radius);
-                if cap > 0.0 { 1.0 / (TAU * cap) } else { 0.0 }
-            }
+            Emitter::Sphere { center, radius, .. } => sphere_pdf(from, center, radius),
             Emitter::SunCap { one_minus_cos, .. } => 1.0 / (TAU * one_minus_cos),
             Emitter::Point { .. } | Emitter::Spot { .. } | Emitter::Sun { .. } => 0.0,
         }
@@ -251,21 +236,6 @@ fn in_world(frame: &Frame, v: DVec3) -> DVec3 {
 /// From this distance on, in squared half diagonals or radii, light is sampled by area: distance and
 /// cosine hardly change over it.
 const FAR2: f64 = 100.0;
-
-/// A rectangle of these half extents from a point before it; `None` where it is sampled by area.
-fn spherical_rectangle(half: [f32; 2], seen: DVec3) -> Option<SphericalRectangle> {
-    let half = half.map(f64::from);
-    let reach2 = half[0] * half[0] + half[1] * half[1];
-    let is_near = seen.z > 0.0 && seen.length_squared() < FAR2 * reach2;
-    is_near.then(|| SphericalRectangle::new(half, seen)).flatten()
-}
-
-/// The same for a disk.
-fn spherical_ellipse(radius: f32, seen: DVec3) -> Option<SphericalEllipse> {
-    let radius = f64::from(radius);
-    let is_near = seen.z > 0.0 && seen.length_squared() < FAR2 * radius * radius;
-    is_near.then(|| SphericalEllipse::new(radius, seen)).flatten()
-}
 
 fn from_point(from: Vec3, position: Vec3, intensity: impl Fn(Vec3) -> Rgb) -> Option<LightSample> {
     let reach = position - from;

@@ -1,8 +1,10 @@
 //! Samples of one light for a block of points, in lanes.
 
+use std::f32::consts::TAU;
+
 use glam::Vec3;
 
-use super::way::Way;
+use super::way::{Way, disk_pdf, rectangle_pdf, sphere_pdf};
 use super::{Emitter, Light, meet_disk, meet_rectangle, sphere};
 use crate::color::Rgb;
 use crate::math::vectorized::{BLOCK, Lane, Lane3, NO_LANES, set_vec3, vec3, vectorized};
@@ -75,6 +77,30 @@ impl Light {
         }
     }
 
+    /// [`Light::pdf`] and [`Light::normal_at`] (zero where there is none) for a block of rays from
+    /// points, of unit direction, that meet the light.
+    pub(crate) fn pdf_block(
+        &self,
+        rays: &RayBlock,
+        t: &Lane<f32>,
+        pdf: &mut Lane<f32>,
+        normal: &mut Lane3,
+    ) {
+        match self.emitter {
+            Emitter::Rectangle { .. } => rectangle_pdfs(&self.emitter, rays, t, pdf, normal),
+            Emitter::Disk { .. } => disk_pdfs(&self.emitter, rays, t, pdf, normal),
+            Emitter::Sphere { .. } => sphere_pdfs(&self.emitter, rays, t, pdf, normal),
+            Emitter::SunCap { one_minus_cos, .. } => {
+                *pdf = [1.0 / (TAU * one_minus_cos); BLOCK];
+                *normal = NO_LANES;
+            }
+            Emitter::Point { .. } | Emitter::Spot { .. } | Emitter::Sun { .. } => {
+                *pdf = [0.0; BLOCK];
+                *normal = NO_LANES;
+            }
+        }
+    }
+
     /// Emitted radiance, of a light with an extent.
     pub(crate) fn radiance(&self) -> Rgb {
         match self.emitter {
@@ -135,6 +161,51 @@ vectorized! {
             let (origin, direction) = (vec3(&rays.origin, i), vec3(&rays.direction, i));
             let (is_met, at, _) = sphere::meeting(origin, direction, center, radius);
             t[i] = if is_met { at } else { f32::NAN };
+        }
+    }
+    fn rectangle_pdfs(
+        emitter: &Emitter,
+        rays: &RayBlock,
+        t: &Lane<f32>,
+        pdf: &mut Lane<f32>,
+        normal: &mut Lane3,
+    ) {
+        let Emitter::Rectangle { center, frame, half, .. } = *emitter else { return };
+        for i in 0..BLOCK {
+            let (from, direction) = (vec3(&rays.origin, i), vec3(&rays.direction, i));
+            pdf[i] = rectangle_pdf(from, direction, t[i], center, &frame, half);
+            set_vec3(normal, i, frame.z);
+        }
+    }
+    fn disk_pdfs(
+        emitter: &Emitter,
+        rays: &RayBlock,
+        t: &Lane<f32>,
+        pdf: &mut Lane<f32>,
+        normal: &mut Lane3,
+    ) {
+        let Emitter::Disk { center, frame, radius, .. } = *emitter else { return };
+        for i in 0..BLOCK {
+            let (from, direction) = (vec3(&rays.origin, i), vec3(&rays.direction, i));
+            pdf[i] = disk_pdf(from, direction, t[i], center, &frame, radius);
+            set_vec3(normal, i, frame.z);
+        }
+    }
+    fn sphere_pdfs(
+        emitter: &Emitter,
+        rays: &RayBlock,
+        t: &Lane<f32>,
+        pdf: &mut Lane<f32>,
+        normal: &mut Lane3,
+    ) {
+        let Emitter::Sphere { center, radius, .. } = *emitter else { return };
+        for i in 0..BLOCK {
+            let (from, direction) = (vec3(&rays.origin, i), vec3(&rays.direction, i));
+            pdf[i] = sphere_pdf(from, center, radius);
+            let out = from + direction * t[i] - center;
+            let scale = out.length_recip();
+            let is_plain = scale.is_finite() && scale > 0.0;
+            set_vec3(normal, i, if is_plain { out * scale } else { Vec3::ZERO });
         }
     }
     fn rectangle_samples(
