@@ -5,7 +5,7 @@
 
 use std::cell::OnceCell;
 
-use crate::math::vectorized::vectorized;
+use crate::math::vectorized::{BLOCK, vectorized};
 use crate::math::{Aabb, RayBatch};
 
 /// A batch ready to be tested against boxes of the world.
@@ -14,61 +14,68 @@ pub(super) struct Selector<'a> {
     /// Of the directions, and the largest coordinate of an origin; from the first time that they
     /// are needed.
     reciprocals: OnceCell<([Vec<f32>; 3], f32)>,
-    /// Where rays leave the box; NaN where they do not touch it.
-    leaves: Vec<f32>,
 }
 
 impl<'a> Selector<'a> {
     pub(super) fn new(rays: &'a RayBatch) -> Self {
-        Self { rays, reciprocals: OnceCell::new(), leaves: Vec::new() }
+        Self { rays, reciprocals: OnceCell::new() }
     }
 
-    /// Overwrites `selected` with the rays that may touch the box before their limit; those whose
-    /// limit is below 0 do not. The box is grown by the bound of the rounding errors.
-    pub(super) fn select(
-        &mut self,
-        bounds: &Aabb,
-        limit: impl Fn(usize) -> f32,
-        selected: &mut Vec<u32>,
-    ) {
-        let n = self.rays.len();
+    /// Overwrites `selected` with the rays that may touch the box before their limits, one a ray;
+    /// those whose limit is below 0 do not. The box is grown by the bound of the rounding errors.
+    pub(super) fn select(&mut self, bounds: &Aabb, limits: &[f32], selected: &mut Vec<u32>) {
         let (reciprocals, magnitude) = self.reciprocals.get_or_init(|| reciprocals(self.rays));
         let pad = (*magnitude + bounds.max_abs()) * (16.0 / 16_777_216.0);
         let bounds = Aabb { min: bounds.min - pad, max: bounds.max + pad };
-        self.leaves.clear();
-        self.leaves.extend((0..n).map(limit));
-        touch(&bounds, &self.rays.origin, reciprocals, &mut self.leaves);
-        selected.clear();
-        selected.resize(n, 0);
-        let mut n_selected = 0;
-        for (i, leave) in self.leaves.iter().enumerate() {
-            selected[n_selected] = i as u32;
-            n_selected += usize::from(!leave.is_nan());
-        }
-        selected.truncate(n_selected);
+        touching(&bounds, &self.rays.origin, reciprocals, limits, selected);
     }
 }
 
 vectorized! {
-    /// Makes NaN of the limits of rays that do not touch a box before them.
-    fn touch(
+    /// The rays that touch a box before their limits.
+    fn touching(
         bounds: &Aabb,
         origin: &[Vec<f32>; 3],
         reciprocals: &[Vec<f32>; 3],
-        limits: &mut [f32],
+        limits: &[f32],
+        selected: &mut Vec<u32>,
     ) {
         let n = limits.len();
-        let (low, high) = (bounds.min, bounds.max);
-        let (ox, oy, oz) = (&origin[0][..n], &origin[1][..n], &origin[2][..n]);
-        let (rx, ry, rz) = (&reciprocals[0][..n], &reciprocals[1][..n], &reciprocals[2][..n]);
-        for i in 0..n {
-            let (near_x, far_x) = slab(low.x, high.x, ox[i], rx[i]);
-            let (near_y, far_y) = slab(low.y, high.y, oy[i], ry[i]);
-            let (near_z, far_z) = slab(low.z, high.z, oz[i], rz[i]);
-            let enter = greater(greater(greater(0.0, near_x), near_y), near_z);
-            let leave = lesser(lesser(lesser(limits[i], far_x), far_y), far_z);
-            limits[i] = if enter <= leave { leave } else { f32::NAN };
+        selected.resize(n, 0);
+        let mut n_selected = 0;
+        for start in (0..n).step_by(BLOCK) {
+            let len = BLOCK.min(n - start);
+            let mut lanes = [[0.0; BLOCK]; 7];
+            let columns = [
+                &origin[0][..n], &origin[1][..n], &origin[2][..n],
+                &reciprocals[0][..n], &reciprocals[1][..n], &reciprocals[2][..n],
+                limits,
+            ];
+            for (lane, column) in lanes.iter_mut().zip(columns) {
+                lane[..len].copy_from_slice(&column[start..start + len]);
+            }
+            let mut touches = [0; BLOCK];
+            let mut n_touching = 0;
+            for i in 0..BLOCK {
+                let (mut enter, mut leave) = (0.0, lanes[6][i]);
+                for axis in 0..3 {
+                    let (low, high) = (bounds.min[axis], bounds.max[axis]);
+                    let (near, far) = slab(low, high, lanes[axis][i], lanes[3 + axis][i]);
+                    enter = if enter > near { enter } else { near };
+                    leave = if leave < far { leave } else { far };
+                }
+                touches[i] = u32::from(enter <= leave);
+                n_touching += touches[i];
+            }
+            // Most blocks of rays pass by all together.
+            if n_touching > 0 {
+                for (i, touches) in touches.iter().enumerate().take(len) {
+                    selected[n_selected] = (start + i) as u32;
+                    n_selected += *touches as usize;
+                }
+            }
         }
+        selected.truncate(n_selected);
     }
 }
 
@@ -77,16 +84,6 @@ vectorized! {
 fn slab(low: f32, high: f32, origin: f32, reciprocal: f32) -> (f32, f32) {
     let (a, b) = ((low - origin) * reciprocal, (high - origin) * reciprocal);
     if a < b { (a, b) } else { (b, a) }
-}
-
-#[inline(always)]
-fn greater(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
-}
-
-#[inline(always)]
-fn lesser(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
 }
 
 fn reciprocals(rays: &RayBatch) -> ([Vec<f32>; 3], f32) {
