@@ -110,12 +110,11 @@ impl RayBatch {
 
     /// The rays at these places, in their order.
     pub fn gathered(&self, places: &[u32]) -> Self {
-        let pick = |column: &Vec<f32>| places.iter().map(|i| column[*i as usize]).collect();
         Self {
-            origin: self.origin.each_ref().map(pick),
-            direction: self.direction.each_ref().map(pick),
-            t_max: pick(&self.t_max),
-            source: places.iter().map(|i| self.source[*i as usize]).collect(),
+            origin: self.origin.each_ref().map(|column| picked(column, places)),
+            direction: self.direction.each_ref().map(|column| picked(column, places)),
+            t_max: picked(&self.t_max, places),
+            source: picked(&self.source, places),
         }
     }
 
@@ -138,6 +137,11 @@ impl RayBatch {
         self.t_max.clear();
         self.source.clear();
     }
+}
+
+#[inline]
+fn picked<T: Copy>(column: &[T], places: &[u32]) -> Vec<T> {
+    places.iter().map(|place| column[*place as usize]).collect()
 }
 
 /// A block of rays.
