@@ -227,7 +227,7 @@ impl Geometry {
         self.occluded_by(rays, |object| !is_clear(object), &mut blocked);
         // Most rays meet nothing that is clear.
         let mut is_tinted = Vec::new();
-        self.occluded_by(rays, &is_clear, &mut is_tinted);
+        self.occluded_by(rays, is_clear, &mut is_tinted);
         shares.clear();
         shares.extend(blocked.iter().enumerate().map(|(i, is_blocked)| {
             if *is_blocked {
@@ -239,7 +239,7 @@ impl Geometry {
             let ray = rays.ray(i);
             let mut share = Rgb::ONE;
             let mut after = (0.0, PrimitiveId::NONE);
-            while let Some(hit) = self.next_hit(&ray, after, &is_clear) {
+            while let Some(hit) = self.next_hit(&ray, after, is_clear) {
                 let Some(factor) = clear(hit) else { return Rgb::ZERO };
                 share *= factor;
                 if share == Rgb::ZERO {
@@ -272,7 +272,8 @@ impl Geometry {
                 continue;
             };
             if limits.is_empty() {
-                let limit = |(is_blocked, t_max): (&bool, &f32)| if *is_blocked { -1.0 } else { *t_max };
+                let limit =
+                    |(is_blocked, t_max): (&bool, &f32)| if *is_blocked { -1.0 } else { *t_max };
                 limits.extend(blocked.iter().zip(&rays.t_max).map(limit));
             }
             selector.select(&bounds, &limits, &mut selected);

@@ -181,3 +181,62 @@ fn greater(a: f32, b: f32) -> f32 {
 fn lesser(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::math::Ray;
+    use crate::math::sampler::Sampler;
+    use crate::math::vectorized::at_every_level;
+
+    /// Rays of every scale, alike in blocks and not, some along axes.
+    fn rays(scale: f32) -> RayBatch {
+        let number = |i: u32, k: u32| Sampler::Random { seed: 3 }.numbers(i, k, 0).pair(0)[0] - 0.5;
+        let vector = |i, k| Vec3::new(number(i, k), number(i, k + 1), number(i, k + 2));
+        let mut rays = RayBatch::default();
+        for i in 0..500 {
+            let origin = 6.0 * vector(if i < 250 { 1000 } else { i }, 0);
+            let mut direction = vector(i, 3) * 0.3 - origin;
+            if i % 17 == 0 {
+                direction.x = 0.0;
+            }
+            let t_max = if i % 3 == 0 { 2.0 / scale } else { f32::INFINITY };
+            rays.push(Ray { t_max, ..Ray::new(origin, direction * scale) });
+        }
+        rays
+    }
+
+    #[test]
+    fn rays_are_selected_as_by_one_test_each() {
+        for scale in [1.0, 1e12, 1e-12] {
+            let rays = rays(scale);
+            let bounds = Aabb { min: Vec3::new(-0.3, -0.1, 0.0), max: Vec3::new(0.1, 0.2, 0.0) };
+            let pad = 1e-4;
+            let touches = |i: &u32| {
+                let ray = rays.ray(*i as usize);
+                let (mut enter, mut leave) = (0.0_f32, ray.t_max);
+                for axis in 0..3 {
+                    let end = |x: f32| (x - ray.origin[axis]) / ray.direction[axis];
+                    let (a, b) = (end(bounds.min[axis] - pad), end(bounds.max[axis] + pad));
+                    enter = enter.max(a.min(b));
+                    leave = leave.min(a.max(b));
+                }
+                enter <= leave
+            };
+            let expected: Vec<u32> = (0..rays.len() as u32).filter(touches).collect();
+            assert!(expected.len() > 50 && expected.len() < 400, "{}", expected.len());
+            for (level, selected) in at_every_level(|| {
+                let mut selected = Vec::new();
+                Selector::new(&rays).select(&bounds, &rays.t_max, &mut selected);
+                selected
+            }) {
+                let extra = selected.iter().filter(|i| !expected.contains(i)).count();
+                let lost = expected.iter().filter(|i| !selected.contains(i)).count();
+                // Padding differs in the last bits.
+                assert!(extra <= 2 && lost <= 2, "{level:?}, {scale}: {extra} more, {lost} lost");
+            }
+        }
+    }
+}

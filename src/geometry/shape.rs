@@ -198,8 +198,7 @@ pub(super) struct Crossings {
 
 impl Crossings {
     /// Nothing found.
-    pub(super) const NONE: Self =
-        Self { t: [[f32::NAN; BLOCK]; 2], primitive: [[0; BLOCK]; 2] };
+    pub(super) const NONE: Self = Self { t: [[f32::NAN; BLOCK]; 2], primitive: [[0; BLOCK]; 2] };
 
     #[inline(always)]
     fn set(&mut self, i: usize, stay: Stay) {
@@ -224,9 +223,7 @@ impl Shape {
             Self::Cone { .. } | Self::Cylinder { .. } => {
                 for i in 0..BLOCK {
                     let (origin, direction) = (dvec3(&rays.origin, i), dvec3(&rays.direction, i));
-                    for (k, crossing) in
-                        self.crossings(origin, direction).into_iter().enumerate()
-                    {
+                    for (k, crossing) in self.crossings(origin, direction).into_iter().enumerate() {
                         let (t, primitive) = crossing.unwrap_or((f64::NAN, 0));
                         (crossings.t[k][i], crossings.primitive[k][i]) = (t as f32, primitive);
                     }
@@ -319,7 +316,8 @@ fn in_box(low: DVec3, high: DVec3, d: DVec3) -> Stay {
         let below = End { t: low[axis] / d[axis], primitive };
         let above = End { t: high[axis] / d[axis], primitive: primitive + 1 };
         let is_along = d[axis] > 0.0;
-        let (enter, exit) = (if is_along { below } else { above }, if is_along { above } else { below });
+        let (enter, exit) =
+            (if is_along { below } else { above }, if is_along { above } else { below });
         // A ray along the faces is between them everywhere or nowhere.
         let is_across = d[axis] == 0.0;
         let is_between = low[axis] <= 0.0 && high[axis] >= 0.0;

@@ -80,7 +80,8 @@ impl Camera {
             (false, 0) => round_lens_rays(self, at, size, lens, rays),
             (false, _) => {
                 for i in 0..BLOCK {
-                    let ray = self.ray(Vec2::new(at[0][i], at[1][i]), size, [lens[0][i], lens[1][i]]);
+                    let ray =
+                        self.ray(Vec2::new(at[0][i], at[1][i]), size, [lens[0][i], lens[1][i]]);
                     set_vec3(&mut rays.origin, i, ray.origin);
                     set_vec3(&mut rays.direction, i, ray.direction);
                 }
@@ -118,4 +119,3 @@ vectorized! {
         }
     }
 }
-

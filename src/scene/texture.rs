@@ -23,8 +23,8 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use crate::color::{Rgb, luminance};
-use crate::math::noise::{Octaves, perlin};
 use crate::math::elementary::{self, floor};
+use crate::math::noise::{Octaves, perlin};
 use crate::math::portable;
 use crate::scene::image::Image;
 
@@ -235,12 +235,12 @@ impl Pattern {
                 if f < LATE { early } else { 1.0 - smooth_step(LATE, 1.0, f) }
             }
         };
-        if value.is_finite() { value.max(0.0).min(1.0) } else { 0.0 }
+        if value.is_finite() { value.clamp(0.0, 1.0) } else { 0.0 }
     }
 }
 
 #[inline(always)]
 fn smooth_step(low: f64, high: f64, x: f64) -> f64 {
-    let t = ((x - low) / (high - low)).max(0.0).min(1.0);
+    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }

@@ -245,3 +245,85 @@ vectorized! {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Frame;
+    use crate::math::sampler::Sampler;
+    use crate::math::vectorized::at_every_level;
+
+    fn emitters() -> Vec<Emitter> {
+        let (center, radiance) = (Vec3::new(0.3, 2.0, -0.4), Rgb::new(1.0, 2.0, 3.0));
+        let frame = Frame::from_normal(Vec3::new(0.1, -1.0, 0.2).normalize());
+        let normal = frame.z;
+        vec![
+            Emitter::Rectangle { center, frame, half: [0.7, 0.2], radiance },
+            Emitter::Disk { center, frame, radius: 0.6, radiance },
+            Emitter::Sphere { center, radius: 0.5, radiance },
+            Emitter::Point { position: center, intensity: radiance },
+            Emitter::Spot { position: center, normal, intensity: radiance },
+            Emitter::Sun { towards: -normal, irradiance: radiance },
+            Emitter::SunCap { frame, one_minus_cos: 0.01, radiance },
+        ]
+    }
+
+    /// From all around: near and far, before and behind, within.
+    #[test]
+    fn a_block_of_points_sees_a_light_as_each_point_does() {
+        let numbers =
+            |i: usize, k: u32| Sampler::Random { seed: 1 }.numbers(i as u32, k, 0).pair(0);
+        for round in 0..20 {
+            let (mut from, mut u) = (NO_LANES, [[0.0; BLOCK]; 2]);
+            for i in 0..BLOCK {
+                let ([x, y], [z, w]) = (numbers(i, 10 * round), numbers(i, 10 * round + 1));
+                let reach = if w < 0.2 { 30.0 } else { 3.0 };
+                set_vec3(&mut from, i, (Vec3::new(x, y, z) - 0.5) * reach);
+                [u[0][i], u[1][i]] = numbers(i, 10 * round + 2);
+            }
+            for emitter in emitters() {
+                let light = Light { visible: true, emitter };
+                let mut rays = RayBlock::IDLE;
+                for (level, samples) in at_every_level(|| {
+                    let mut samples = LightBlock::EMPTY;
+                    light.sample_block(&from, &u, &mut samples);
+                    samples
+                }) {
+                    for i in 0..BLOCK {
+                        let found = vec3(&samples.weight, i);
+                        let one = light.sample(vec3(&from, i), [u[0][i], u[1][i]]);
+                        let Some(one) = one else {
+                            assert_eq!(found, Rgb::ZERO, "{level:?}, {emitter:?}");
+                            continue;
+                        };
+                        let normal = one.normal.unwrap_or(Vec3::ZERO);
+                        let pdf = one.pdf.unwrap_or(f32::INFINITY);
+                        assert_eq!(found, one.weight, "{level:?}, {emitter:?}");
+                        assert_eq!(vec3(&samples.reach, i), one.reach, "{level:?}, {emitter:?}");
+                        assert_eq!(vec3(&samples.direction, i), one.direction, "{level:?}");
+                        assert_eq!(vec3(&samples.normal, i), normal, "{level:?}, {emitter:?}");
+                        assert_eq!((samples.pdf[i], samples.t_max), (pdf, one.t_max), "{level:?}");
+                        set_vec3(&mut rays.origin, i, vec3(&from, i));
+                        set_vec3(&mut rays.direction, i, one.direction);
+                    }
+                }
+                for (level, (t, pdf)) in at_every_level(|| {
+                    let (mut pdf, mut normal) = ([0.0; BLOCK], NO_LANES);
+                    let mut met = [f32::NAN; BLOCK];
+                    light.intersect_block(&rays, &mut met);
+                    light.pdf_block(&rays, &met, &mut pdf, &mut normal);
+                    (met, pdf)
+                }) {
+                    for i in 0..BLOCK {
+                        let (from, to) = (vec3(&rays.origin, i), vec3(&rays.direction, i));
+                        let one = light.intersect(&Ray::new(from, to)).map(|(t, _)| t);
+                        assert_eq!((t[i] > 0.0).then_some(t[i]), one, "{level:?}, {emitter:?}");
+                        if one.is_some() {
+                            assert_eq!(pdf[i], light.pdf(from, to, t[i]), "{level:?}, {emitter:?}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -45,10 +45,13 @@ pub(super) fn meeting(
     (is_met, t as f32, (f + d * t).normalize().as_vec3())
 }
 
-/// The point of a direction that rounding put just outside the sphere.
+/// The point of a direction that rounding put just outside the sphere; from so far that its normal
+/// is lost, it faces the eye.
 #[inline(always)]
 pub(super) fn tangent(from: Vec3, direction: Vec3, center: Vec3) -> (f32, Vec3) {
     let t = (center - from).dot(direction);
-    let normal: DVec3 = (from + direction * t - center).as_dvec3();
-    (t, normal.normalize().as_vec3())
+    let out: DVec3 = (from + direction * t - center).as_dvec3();
+    let scale = out.length_recip();
+    let normal = (out * scale).as_vec3();
+    (t, if scale.is_finite() { normal } else { -direction })
 }
