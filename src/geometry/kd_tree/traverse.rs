@@ -16,11 +16,11 @@ pub(super) const MAX_DEPTH: usize = 60;
 /// 16 of them, so that no cell is skipped that holds something the rounded test would accept.
 #[derive(Clone, Copy, Debug)]
 pub struct Walk {
-    origin: [f32; 3],
-    reciprocal: [f32; 3],
-    pad: f32,
-    t_min: f32,
-    t_max: f32,
+    pub(super) origin: [f32; 3],
+    pub(super) reciprocal: [f32; 3],
+    pub(super) pad: f32,
+    pub(super) t_min: f32,
+    pub(super) t_max: f32,
 }
 
 impl Walk {
