@@ -6,7 +6,9 @@ use std::time::Instant;
 
 use glam::{DVec3, Vec3};
 
-use crate::geometry::kd_tree::{self, Item, KdTree, LANES, Lanes, PacketWalk, Split, Visit, Walk};
+use crate::geometry::kd_tree::{
+    self, Item, KdTree, LANES, Lanes, PacketRays, PacketWalk, Split, Visit, Walk,
+};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::nearest::{Nearest, Search};
 use crate::geometry::triangle::{ShearedRay, ShearedRays};
@@ -218,19 +220,7 @@ impl MeshTree {
         any_will_do: bool,
     ) -> bool {
         let Structure::KdTree(tree, triangles) = &self.structure else { return false };
-        let ray = |i: usize| Ray { t_max: nearest[i].t(), ..rays.ray(first + i) };
-        let n = nearest.len();
-        let Some(sheared) = ShearedRays::new((0..n).map(ray)) else { return false };
-        let Some(walk) = PacketWalk::new((0..n).map(ray), &tree.bounds) else { return false };
-        let sources = &rays.source[first..first + n];
-        let mut ends = [-1.0; LANES];
-        for (end, nearest) in ends.iter_mut().zip(&*nearest) {
-            *end = nearest.t();
-        }
-        let mut visit =
-            PacketVisit { rays: sheared, triangles, object, nearest, sources, any_will_do, ends };
-        walk_kd_tree(tree, &walk, &mut visit);
-        true
+        walk_kd_tree(tree, triangles, rays, first, object, nearest, any_will_do)
     }
 
     fn visit(&self, ray: &Ray, mut visit: impl FnMut(&[Triangle]) -> f32) {
@@ -301,8 +291,24 @@ impl Visit for PacketVisit<'_> {
 }
 
 vectorized! {
-    fn walk_kd_tree(tree: &KdTree, walk: &PacketWalk, visit: &mut PacketVisit<'_>) {
-        tree.walk_packet(walk, visit);
+    fn walk_kd_tree(
+        tree: &KdTree,
+        triangles: &[Triangle],
+        rays: &RayBatch,
+        first: usize,
+        object: u32,
+        nearest: &mut [Nearest],
+        any_will_do: bool,
+    ) -> bool {
+        let packet = PacketRays::new(rays, first, nearest.iter().map(Nearest::t));
+        let Some(walk) = PacketWalk::new(&packet, &tree.bounds) else { return false };
+        let Some(sheared) = ShearedRays::new(&packet) else { return false };
+        let sources = &rays.source[first..first + nearest.len()];
+        let ends = packet.t_max;
+        let mut visit =
+            PacketVisit { rays: sheared, triangles, object, nearest, sources, any_will_do, ends };
+        tree.walk_packet(&walk, &mut visit);
+        true
     }
 }
 

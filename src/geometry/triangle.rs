@@ -13,7 +13,7 @@
 
 use glam::Vec3;
 
-use crate::geometry::kd_tree::{LANES, Lanes};
+use crate::geometry::kd_tree::{LANES, Lanes, PacketRays};
 use crate::math::Ray;
 
 /// What the test needs of a direction, computed once: the order of axes that makes z the largest
@@ -36,17 +36,24 @@ impl Axes {
     #[inline(always)]
     pub(super) fn new(direction: Vec3) -> Self {
         let a = direction.abs();
-        let z = if a.x > a.y {
-            if a.x > a.z { 0 } else { 2 }
-        } else if a.y > a.z {
-            1
-        } else {
-            2
-        };
-        let order = [(z + 1) % 3, (z + 2) % 3, z];
+        let order = order_of(largest_axis(a.x, a.y, a.z));
         let [x, y, speed] = order.map(|axis| direction[axis]);
         Self { order, shear: [x / speed, y / speed], speed }
     }
+}
+
+/// Which is the largest: of x and y the latter, and z, where they are equal.
+#[inline(always)]
+fn largest_axis(x: f32, y: f32, z: f32) -> usize {
+    let of_two = if x > y { 0 } else { 1 };
+    let largest = if x > y { x } else { y };
+    if largest > z { of_two } else { 2 }
+}
+
+/// The order of axes that has that one last.
+#[inline(always)]
+fn order_of(last: usize) -> [usize; 3] {
+    [(last + 1) % 3, (last + 2) % 3, last]
 }
 
 /// A ray ready for tests against triangles.
@@ -94,30 +101,27 @@ pub(super) struct ShearedRays {
 }
 
 impl ShearedRays {
-    /// `None` where rays differ in the order of axes. Lanes without a ray meet nothing.
-    pub(super) fn new(rays: impl Iterator<Item = Ray>) -> Option<Self> {
-        let none = [0.0; LANES];
-        let mut packet = Self {
-            order: [0, 1, 2],
-            origin: [none; 3],
-            shear: [none; 2],
-            speed: [f32::NAN; LANES],
-        };
-        for (i, ray) in rays.enumerate().take(LANES) {
-            let Axes { order, shear, speed } = Axes::new(ray.direction);
-            if i > 0 && order != packet.order {
-                return None;
-            }
-            packet.order = order;
-            packet.speed[i] = speed;
-            for k in 0..2 {
-                packet.shear[k][i] = shear[k];
-            }
-            for k in 0..3 {
-                packet.origin[k][i] = ray.origin[order[k]];
-            }
+    /// `None` where rays differ in the order of axes.
+    #[inline(always)]
+    pub(super) fn new(rays: &PacketRays) -> Option<Self> {
+        let [x, y, z] = &rays.direction;
+        let first = largest_axis(x[0].abs(), y[0].abs(), z[0].abs());
+        let mut n_others = 0_u32;
+        for i in 0..LANES {
+            let largest = largest_axis(x[i].abs(), y[i].abs(), z[i].abs());
+            n_others += u32::from(largest != first);
         }
-        Some(packet)
+        if n_others > 0 {
+            return None;
+        }
+        let order = order_of(first);
+        let [along_x, along_y, speed] = order.map(|axis| rays.direction[axis]);
+        let mut shear = [[0.0; LANES]; 2];
+        for i in 0..LANES {
+            shear[0][i] = along_x[i] / speed[i];
+            shear[1][i] = along_y[i] / speed[i];
+        }
+        Some(Self { order, origin: order.map(|axis| rays.origin[axis]), shear, speed })
     }
 
     /// [`ShearedRay::intersect`] for all rays: parameters above 0 and not beyond the limits, else

@@ -9,8 +9,8 @@
 use std::ops::Range;
 
 use crate::geometry::kd_tree::KdTree;
-use crate::geometry::kd_tree::traverse::{MAX_DEPTH, Walk};
-use crate::math::{Aabb, Ray};
+use crate::geometry::kd_tree::traverse::{MAX_DEPTH, padding, reciprocal};
+use crate::math::{Aabb, RayBatch};
 
 /// Rays of a packet.
 pub const LANES: usize = 16;
@@ -37,34 +37,83 @@ pub trait Visit {
     fn visit(&mut self, items: Range<usize>, limits: &mut Lanes<f32>);
 }
 
+/// Rays of a packet as they come: origins, directions, ends. Lanes without a ray end below 0 and
+/// repeat the direction of another.
+#[derive(Clone, Copy, Debug)]
+pub struct PacketRays {
+    pub(in crate::geometry) origin: [Lanes<f32>; 3],
+    pub(in crate::geometry) direction: [Lanes<f32>; 3],
+    pub(in crate::geometry) t_max: Lanes<f32>,
+}
+
+impl PacketRays {
+    /// `ends.len()` rays of a batch, from `first` on, with these ends; at most [`LANES`].
+    #[inline(always)]
+    pub fn new(rays: &RayBatch, first: usize, ends: impl ExactSizeIterator<Item = f32>) -> Self {
+        let n = ends.len();
+        let lanes = |column: &Vec<f32>| {
+            let mut lanes = [column[first]; LANES];
+            lanes[..n].copy_from_slice(&column[first..first + n]);
+            lanes
+        };
+        let [ox, oy, oz] = &rays.origin;
+        let [dx, dy, dz] = &rays.direction;
+        let mut t_max = [-1.0; LANES];
+        for (t_max, end) in t_max.iter_mut().zip(ends) {
+            *t_max = end;
+        }
+        Self {
+            origin: [lanes(ox), lanes(oy), lanes(oz)],
+            direction: [lanes(dx), lanes(dy), lanes(dz)],
+            t_max,
+        }
+    }
+}
+
 impl PacketWalk {
-    /// `None` where rays point to different sides, or all of them pass the box by. At most
-    /// [`LANES`] rays; one whose end is below 0 is left out.
-    pub fn new(rays: impl Iterator<Item = Ray>, bounds: &Aabb) -> Option<Self> {
+    /// `None` where rays point to different sides.
+    #[inline(always)]
+    pub fn new(rays: &PacketRays, bounds: &Aabb) -> Option<Self> {
         let mut packet = Self {
-            origin: [[0.0; LANES]; 3],
+            origin: rays.origin,
             reciprocal: [[1.0; LANES]; 3],
             pad: [0.0; LANES],
             t_min: [0.0; LANES],
-            t_max: [-1.0; LANES],
+            t_max: rays.t_max,
             is_up: [true; 3],
         };
-        let mut n_met = 0;
-        for (i, ray) in rays.enumerate().take(LANES) {
-            let Some(walk) = Walk::new(&ray, bounds) else { continue };
-            let is_up = walk.reciprocal.map(|r| r > 0.0);
-            if n_met > 0 && is_up != packet.is_up {
+        let reach = bounds.max_abs();
+        for i in 0..LANES {
+            let [x, y, z] =
+                [rays.origin[0][i].abs(), rays.origin[1][i].abs(), rays.origin[2][i].abs()];
+            let largest = if x > y { x } else { y };
+            let largest = if largest > z { largest } else { z };
+            packet.pad[i] = padding(largest, reach);
+        }
+        for axis in 0..3 {
+            let mut n_up = 0;
+            for i in 0..LANES {
+                let r = reciprocal(rays.direction[axis][i]);
+                packet.reciprocal[axis][i] = r;
+                n_up += usize::from(r > 0.0);
+            }
+            let is_up = n_up == LANES;
+            if !is_up && n_up > 0 {
                 return None;
             }
-            n_met += 1;
-            packet.is_up = is_up;
-            for axis in 0..3 {
-                packet.origin[axis][i] = walk.origin[axis];
-                packet.reciprocal[axis][i] = walk.reciprocal[axis];
+            packet.is_up[axis] = is_up;
+            let (low, high) = (bounds.min[axis], bounds.max[axis]);
+            for i in 0..LANES {
+                let (low, high) = (low - packet.pad[i], high + packet.pad[i]);
+                let (near, far) = if is_up { (low, high) } else { (high, low) };
+                let origin = packet.origin[axis][i];
+                let enter = (near - origin) * packet.reciprocal[axis][i];
+                let leave = (far - origin) * packet.reciprocal[axis][i];
+                packet.t_min[i] = packet.t_min[i].max(enter);
+                packet.t_max[i] = packet.t_max[i].min(leave);
             }
-            (packet.pad[i], packet.t_min[i], packet.t_max[i]) = (walk.pad, walk.t_min, walk.t_max);
         }
-        (n_met > 0).then_some(packet)
+        Some(packet)
     }
 }
 
