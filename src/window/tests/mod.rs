@@ -3,6 +3,7 @@
 mod export;
 mod layout;
 mod panels;
+mod random_user;
 pub(in crate::window) mod parameters;
 mod promises;
 mod start;
