@@ -3,9 +3,9 @@
 mod export;
 mod layout;
 mod panels;
-mod random_user;
 pub(in crate::window) mod parameters;
 mod promises;
+mod random_user;
 mod start;
 mod views;
 mod whole;

@@ -4,17 +4,22 @@
 //! `PENUMBRA_RANDOM_STEPS` makes it longer and `PENUMBRA_RANDOM_SEED` another; a long run alone in
 //! its process also holds its memory to a bound.
 
-use super::whole::{scene_file, wait_until, window};
+use super::whole::{PATIENCE, scene_file, wait_until, window_with};
 use crate::document::Document;
+use crate::geometry::AcceleratorKind;
 use crate::io::scene_file::{get, parameters, validate, with_value};
-use crate::loader::Source;
-use crate::render::{Film, World, render_pass};
+use crate::io::snapshot::read_pixels;
+use crate::loader::{Source, load};
+use crate::render::{Film, RenderJob, RenderSettings, World, render_pass};
+use crate::scene::resolve;
 use crate::session::Phase;
+use crate::tone_mapping::srgb_bytes;
 use crate::window::app::App;
 use egui::{Event, Key, Modifiers, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
@@ -27,8 +32,10 @@ const LONG: u64 = 5000;
 /// By how much memory may grow from the first third of a long run to its end: what undo keeps, and
 /// what the allocator does not give back.
 const MOST_GROWTH_MIB: u64 = 96;
-/// Longer than any frame takes.
-const PATIENCE: Duration = Duration::from_secs(120);
+/// Longer than any frame takes, and than the waits at the end, which tell what they wait for.
+const LONGEST_FRAME: Duration = PATIENCE.saturating_mul(4);
+/// Snapshots of a run that are rendered again.
+const N_VERIFIED: usize = 2;
 
 struct User {
     state: u64,
@@ -48,7 +55,7 @@ impl User {
     }
 
     fn act(&mut self, harness: &mut Harness<'_, App>) {
-        match self.below(12) {
+        match self.below(13) {
             0..=2 => self.press(harness),
             3 | 4 => self.drag(harness),
             5 => {
@@ -61,12 +68,13 @@ impl User {
                     modifiers: Modifiers::NONE,
                 });
             }
-            6..=8 => self.edit(&mut harness.state_mut().document),
+            6..=8 => self.edit(harness),
             9 => {
                 let size = egui::vec2(420.0 + 300.0 * self.unit(), 320.0 + 200.0 * self.unit());
                 harness.set_size(size);
             }
             10 => self.open(harness),
+            11 => harness.key_press(Key::F12),
             _ => {
                 let at = harness.state().viewport.rect.lerp_inside(egui::vec2(self.unit(), 0.5));
                 harness.hover_at(at);
@@ -78,7 +86,7 @@ impl User {
     }
 
     fn press(&mut self, harness: &mut Harness<'_, App>) {
-        const KEYS: [Key; 14] = [
+        const KEYS: [Key; 15] = [
             Key::E,
             Key::T,
             Key::D,
@@ -92,6 +100,7 @@ impl User {
             Key::Num1,
             Key::Num4,
             Key::Num0,
+            Key::L,
             Key::Escape,
         ];
         match self.below(4) {
@@ -114,18 +123,26 @@ impl User {
         harness.drop_at(at);
     }
 
-    /// Gives a parameter, any but the size of the work, another valid value.
-    fn edit(&mut self, document: &mut Document) {
+    /// Gives a parameter, any but the size of the work, another valid value. It is still there
+    /// after a frame, unless another scene comes; the camera may be on the move.
+    fn edit(&mut self, harness: &mut Harness<'_, App>) {
+        let document = &mut harness.state_mut().document;
         let scene = &document.description;
         let mut paths = parameters(scene);
         paths.retain(|path| !path.to_string().starts_with("render."));
         let path = &paths[self.below(paths.len())];
         let Ok(Some(value)) = get(scene, path) else { return };
         let value = self.near(value);
-        if let Ok(edited) = with_value(scene, path, value) {
-            document.checkpoint("before", None);
-            document.description = edited;
-            document.checkpoint("at random", None);
+        let Ok(edited) = with_value(scene, path, value) else { return };
+        let asked = get(&edited, path);
+        document.checkpoint("before", None);
+        document.description = edited;
+        document.checkpoint("at random", None);
+        let stays = harness.state().files.loading.is_none();
+        harness.run_steps(1);
+        if stays && !path.to_string().starts_with("camera.") {
+            let found = get(&harness.state().document.description, path);
+            assert_eq!(found, asked, "{path} is lost");
         }
     }
 
@@ -188,14 +205,18 @@ fn a_user_at_random_loses_nothing_and_ends_with_the_right_picture() {
     let (beat, beats) = channel::<()>();
     let watchdog = crate::threads::spawn("watchdog", move || {
         loop {
-            match beats.recv_timeout(PATIENCE) {
+            match beats.recv_timeout(LONGEST_FRAME) {
                 Ok(()) => {}
                 Err(RecvTimeoutError::Disconnected) => return,
                 Err(RecvTimeoutError::Timeout) => std::process::abort(),
             }
         }
     });
-    let mut harness = window(&scene, [600.0, 420.0]);
+    let pictures = folder.path().join("pictures");
+    std::fs::create_dir(&pictures).unwrap();
+    let own = folder.path().join("own");
+    let mut harness = window_with(&scene, [600.0, 420.0], Some(own));
+    harness.state_mut().interface.export.folder = Some(pictures.clone());
     let mut memory_before = None;
     for step in 0..n_steps {
         user.act(&mut harness);
@@ -209,6 +230,11 @@ fn a_user_at_random_loses_nothing_and_ends_with_the_right_picture() {
     finish(&mut harness);
     check_history(&mut harness.state_mut().document, seed);
     check_picture(&mut harness, seed);
+    let n_before = paths_in(&pictures).len();
+    harness.key_press(Key::F12);
+    harness.run_steps(1);
+    wait_until(&mut harness, |_| n_before < paths_in(&pictures).len());
+    check_snapshots(&pictures, seed);
     if let (true, Some(before), Some(after)) = (LONG <= n_steps, memory_before, resident_mib()) {
         let is_bounded = after < before + MOST_GROWTH_MIB;
         assert!(is_bounded, "seed {seed}: {before} MiB after a third, {after} MiB at the end");
@@ -259,6 +285,39 @@ fn check_picture(harness: &mut Harness<'_, App>, seed: u64) {
     let (shown, cold): (Vec<u32>, Vec<u32>) =
         (bits(&frame.picture.pixels), bits(&film.picture().pixels));
     assert!(shown == cold, "seed {seed}: a cold start makes another picture");
+}
+
+/// Snapshots hold the scene that they are a picture of.
+fn check_snapshots(pictures: &Path, seed: u64) {
+    for shot in paths_in(pictures).iter().rev().take(N_VERIFIED) {
+        let bytes = std::fs::read(shot).unwrap();
+        let loaded = load(&Source::File(shot.clone()), &[], &AtomicBool::new(false)).unwrap();
+        let scene = Arc::new(resolve(&loaded.description, &loaded.assets).unwrap());
+        let render = &loaded.description.render;
+        let (width, height) = (render.width, render.height);
+        let settings = RenderSettings::new(render, AcceleratorKind::default());
+        let world = World::new(RenderJob { scene, width, height, settings });
+        let mut film = Film::new(width, height).unwrap();
+        let n_samples = loaded.snapshot.expect("a snapshot").samples;
+        let passed = render_pass(&world, &mut film, n_samples, &AtomicBool::new(false));
+        assert!(passed.is_ok(), "nobody stops it");
+        let rendered = srgb_bytes(&film.picture(), &loaded.description.tone_mapping);
+        let saved = read_pixels(&bytes, (width, height)).unwrap();
+        assert!(rendered == saved, "seed {seed}: {} shows another scene", shot.display());
+    }
+}
+
+/// Pictures there, in the order of their names.
+fn paths_in(pictures: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(pictures).unwrap().map(|entry| entry.unwrap().path());
+    let mut paths: Vec<_> = entries.filter(|path| !is_hidden(path)).collect();
+    paths.sort();
+    paths
+}
+
+/// Whether it is a file that is still being written.
+fn is_hidden(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."))
 }
 
 /// Memory of this process in MiB, where the system tells.
