@@ -36,7 +36,7 @@ struct State {
 pub fn report_to(folder: Option<PathBuf>) {
     state().folder = folder;
     std::panic::set_hook(Box::new(|panic| {
-        if IS_CONTAINED.get() {
+        if is_contained() {
             return;
         }
         let line = match write_report(panic) {
@@ -56,6 +56,11 @@ pub fn contain<T>(work: impl FnOnce() -> T) -> Option<T> {
     let result = catch_unwind(AssertUnwindSafe(work)).ok();
     IS_CONTAINED.set(before);
     result
+}
+
+/// Whether this thread runs a foreign decoder now, whose panic is no mistake.
+pub fn is_contained() -> bool {
+    IS_CONTAINED.get()
 }
 
 /// The text of the scene that is worked on from now on.
