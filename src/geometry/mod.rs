@@ -123,7 +123,7 @@ impl Geometry {
     }
 
     /// Builds whatever trees are missing. `instances` are in the scene's order, which numbers them.
-    /// `stop` is looked at every few hundred thousand triangles, or at every cut of more.
+    /// `stop` is looked at before every cut of more than a few thousand triangles.
     ///
     /// # Errors
     /// [`Stopped`]; trees that were finished before are kept with their meshes.

@@ -68,6 +68,13 @@ pub fn note_scene(text: impl Into<Arc<str>>) {
     state().scene = Some(text.into());
 }
 
+/// Makes a mistake on purpose where `PENUMBRA_MISTAKE` is set, to see what is told of it; never in a
+/// program that was built to be used.
+pub fn rehearse() {
+    let is_asked = cfg!(debug_assertions) && std::env::var_os("PENUMBRA_MISTAKE").is_some();
+    assert!(!is_asked, "a mistake on purpose");
+}
+
 /// Where this run's newest report is.
 pub fn newest_report() -> Option<PathBuf> {
     state().written.last().cloned()

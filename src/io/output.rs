@@ -1,14 +1,23 @@
 //! Pictures to disk: whole or not at all.
 
-use std::fs::File;
+use std::ffi::OsStr;
+use std::fs::{DirEntry, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use image::{ExtendedColorType, ImageEncoder};
 use serde::{Deserialize, Serialize};
 
 use crate::color::Picture;
 use crate::io::printable_path;
+
+/// Begins the names of files that are being written; then come [`N_RANDOM`] letters and digits.
+const TEMPORARY: &str = ".penumbra-";
+const N_RANDOM: usize = 6;
+/// A file of such a name that nobody holds and that has not changed for so long was left behind by a
+/// program that was killed.
+const LEFT_BEHIND: Duration = Duration::from_secs(60 * 60);
 
 /// The format of a picture file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -157,8 +166,9 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
 }
 
 fn write_temporary(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile, WriteError> {
+    remove_left_behind(folder_of(path));
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".penumbra-");
+    builder.prefix(TEMPORARY).rand_bytes(N_RANDOM);
     #[cfg(unix)]
     {
         // As any program would create it; the process's umask takes its share.
@@ -168,12 +178,37 @@ fn write_temporary(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile,
     let file = builder
         .tempfile_in(folder_of(path))
         .map_err(|error| WriteError::new(path, plain(&error)))?;
+    // Where files cannot be locked, their age protects them from being taken for left behind.
+    let _ = file.as_file().try_lock();
     let mut writer = BufWriter::new(file);
     let written = writer.write_all(bytes).and_then(|()| writer.flush());
     written.map_err(|error| WriteError::new(path, error))?;
     let file = writer.into_inner().map_err(|error| WriteError::new(path, error.error().kind()))?;
     file.as_file().sync_all().map_err(|error| WriteError::new(path, error))?;
     Ok(file)
+}
+
+/// Removes what killed programs left in a folder. Nothing depends on it.
+fn remove_left_behind(folder: &Path) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        if is_temporary(&entry.file_name()) && is_left_behind(&entry).unwrap_or(false) {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
+fn is_temporary(name: &OsStr) -> bool {
+    let random = name.to_str().and_then(|name| name.strip_prefix(TEMPORARY));
+    random.is_some_and(|text| {
+        text.len() == N_RANDOM && text.chars().all(|c| c.is_ascii_alphanumeric())
+    })
+}
+
+/// Whether a file is old, and whoever wrote it is gone.
+fn is_left_behind(entry: &DirEntry) -> io::Result<bool> {
+    let metadata = entry.metadata()?;
+    let is_old = metadata.modified()?.elapsed().is_ok_and(|age| LEFT_BEHIND <= age);
+    Ok(metadata.is_file() && is_old && File::open(entry.path())?.try_lock().is_ok())
 }
 
 /// What the system said, without the name of the temporary file: nobody knows that one.
@@ -193,5 +228,40 @@ fn folder_of(path: &Path) -> &Path {
 fn sync_folder(path: &Path) {
     if let Ok(folder) = File::open(folder_of(path)) {
         drop(folder.sync_all());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::SystemTime;
+
+    #[test]
+    fn what_a_killed_program_left_is_removed_by_the_next_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let file = |name: &str, age: Duration| {
+            let file = File::create(path(name)).unwrap();
+            file.set_modified(SystemTime::now().checked_sub(age).unwrap()).unwrap();
+            file
+        };
+        let old = 2 * LEFT_BEHIND;
+        file(".penumbra-Ab3xYz", old);
+        file(".penumbra-youngx", LEFT_BEHIND / 2);
+        file(".penumbra-notes.txt", old);
+        file("penumbra-Ab3xYz", old);
+        let held = file(".penumbra-livesx", old);
+        held.try_lock().unwrap();
+        std::fs::create_dir(path(".penumbra-folder")).unwrap();
+        replace_file(&path("a.png"), b"new").unwrap();
+        let mut names: Vec<_> = std::fs::read_dir(folder.path())
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        let kept = [".penumbra-folder", ".penumbra-livesx", ".penumbra-notes.txt"];
+        let kept = [&kept[..], &[".penumbra-youngx", "a.png", "penumbra-Ab3xYz"]].concat();
+        assert_eq!(names, kept, "one file is left behind, and the rest is others'");
+        assert_eq!(std::fs::read(path("a.png")).unwrap(), b"new", "what was written");
     }
 }
