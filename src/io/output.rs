@@ -123,15 +123,16 @@ pub fn encode_hdr(picture: &Picture) -> Result<Vec<u8>, image::ImageError> {
 }
 
 /// Replaces a file by these bytes: temporary file beside it, synced, renamed. Until then the old
-/// file is as it was.
+/// file is as it was. Where the name is a link, the file behind it is replaced.
 ///
 /// # Errors
 /// When the folder is not there or not writable, or the disk is full.
 pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    write_temporary(path, bytes)?
-        .persist(path)
+    let place = behind_links(path);
+    write_temporary(&place, bytes)?
+        .persist(&place)
         .map_err(|error| WriteError::new(path, error.error))?;
-    sync_folder(path);
+    sync_folder(&place);
     Ok(())
 }
 
@@ -156,12 +157,13 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     if is_folder {
         return Err(WriteError::new(path, "this is the name of a folder"));
     }
-    let folder = folder_of(path);
+    let place = behind_links(path);
+    let folder = folder_of(&place);
     if !folder.exists() {
         let reason = format!("there is no folder {}; make it first", printable_path(folder));
         return Err(WriteError::new(path, reason));
     }
-    let file = write_temporary(path, &[])?;
+    let file = write_temporary(&place, &[])?;
     file.close().map_err(|error| WriteError::new(path, error))
 }
 
@@ -217,6 +219,12 @@ fn plain(error: &io::Error) -> String {
     text.split_once(" at path ").map_or_else(|| text.clone(), |(reason, _)| reason.to_owned())
 }
 
+/// The file that a link stands for; the path itself where it is none, or leads nowhere.
+fn behind_links(path: &Path) -> PathBuf {
+    let target = path.is_symlink().then(|| std::fs::canonicalize(path).ok()).flatten();
+    target.unwrap_or_else(|| path.to_owned())
+}
+
 /// The folder that a file is in, or is to be in.
 fn folder_of(path: &Path) -> &Path {
     let parent = path.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -235,6 +243,21 @@ fn sync_folder(path: &Path) {
 mod tests {
     use super::*;
     use std::time::SystemTime;
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_stays_and_the_file_behind_it_is_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        std::fs::create_dir(path("elsewhere")).unwrap();
+        std::fs::write(path("elsewhere/a.toml"), "old").unwrap();
+        std::os::unix::fs::symlink("elsewhere/a.toml", path("a.toml")).unwrap();
+        check_writable(&path("a.toml")).unwrap();
+        replace_file(&path("a.toml"), b"new").unwrap();
+        assert!(path("a.toml").is_symlink(), "the link is gone");
+        assert_eq!(std::fs::read(path("elsewhere/a.toml")).unwrap(), b"new", "the file behind it");
+        create_file(&path("a.toml"), b"newer").unwrap_err();
+    }
 
     #[test]
     fn what_a_killed_program_left_is_removed_by_the_next_and_nothing_else() {

@@ -379,7 +379,7 @@ mod tests {
     /// Reciprocals and their products are infinite there, and their differences no numbers.
     #[test]
     fn a_ray_whose_box_tests_all_overflow_comes_to_an_end() {
-        let bvh = WideBvh::build(&soup(600));
+        let bvh = WideBvh::build(&soup(600), &AtomicBool::new(false)).unwrap();
         let far = Vec3::splat(3e19);
         let mut rays = RayBatch::default();
         (0..32).for_each(|_| rays.push(Ray::new(far, Vec3::splat(-1e-25))));

@@ -1,6 +1,7 @@
 //! The window driven by label and role, without a display.
 
 mod export;
+mod extremes;
 mod layout;
 mod panels;
 pub(in crate::window) mod parameters;
