@@ -269,3 +269,47 @@ impl Opened {
         Ok(opened)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::AcceleratorKind;
+    use crate::io::gallery::GALLERY;
+    use crate::math::vectorized::at_every_level;
+    use crate::render::{Film, RenderJob, RenderSettings, World, render_pass};
+    use crate::scene::description::IntegratorKind;
+    use crate::scene::resolve;
+    use crate::threads;
+
+    /// Registers of any width, and none.
+    #[test]
+    fn scenes_of_the_gallery_have_the_same_bytes_on_every_processor() {
+        let stop = AtomicBool::new(false);
+        let pool = threads::pool("test", 1).unwrap();
+        for entry in GALLERY {
+            let loaded = load(&Source::Gallery(entry.name), &[], &stop).unwrap();
+            let scene = Arc::new(resolve(&loaded.description, &loaded.assets).unwrap());
+            for integrator in [IntegratorKind::Direct, IntegratorKind::Path] {
+                let accelerator = AcceleratorKind::default();
+                let mut settings = RenderSettings::new(&loaded.description.render, accelerator);
+                settings.integrator = integrator;
+                let job = RenderJob { scene: Arc::clone(&scene), width: 40, height: 24, settings };
+                let world = World::new(job);
+                let picture = || {
+                    let mut film = Film::new(40, 24).unwrap();
+                    render_pass(&world, &mut film, 2, &stop).unwrap();
+                    film.picture().pixels
+                };
+                let pictures = pool.install(|| at_every_level(picture));
+                for (level, picture) in &pictures {
+                    assert!(
+                        *picture == pictures[0].1,
+                        "{} by {integrator:?}: {level:?} differs from {:?}",
+                        entry.name,
+                        pictures[0].0
+                    );
+                }
+            }
+        }
+    }
+}

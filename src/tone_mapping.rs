@@ -6,6 +6,7 @@
 use std::sync::OnceLock;
 
 use crate::color::{Picture, linear_from_srgb};
+use crate::math::vectorized::{BLOCK, NO_LANES, vectorized};
 use crate::math::{approx, portable};
 use crate::scene::description::{ToneMappingDescription, ToneOperator};
 
@@ -26,17 +27,88 @@ pub fn map_to_srgb8(
 ) {
     let gain = portable::exp2(exposure_ev);
     let encoder = Encoder::get();
-    let map = |curve: fn([f32; 3]) -> [f32; 3], out: &mut [[u8; 3]]| {
-        for (pixel, bytes) in pixels.iter().zip(out) {
-            let exposed = pixel.map(|c| finite_light(c * gain));
-            *bytes = curve(exposed).map(|c| encoder.encode(c));
-        }
-    };
     match operator {
-        ToneOperator::Linear => map(|c| c, out),
-        ToneOperator::Reinhard => map(|c| c.map(|x| x / (1.0 + x)), out),
-        ToneOperator::Aces => map(aces, out),
-        ToneOperator::Agx => map(agx, out),
+        ToneOperator::Linear => map_linear(pixels, gain, encoder, out),
+        ToneOperator::Reinhard => map_reinhard(pixels, gain, encoder, out),
+        ToneOperator::Aces => map_aces(pixels, gain, encoder, out),
+        ToneOperator::Agx => map_agx(pixels, gain, encoder, out),
+    }
+}
+
+/// An operator on one exposed colour.
+trait Curve {
+    fn map(c: [f32; 3]) -> [f32; 3];
+}
+
+struct Clip;
+struct Reinhard;
+struct Aces;
+struct Agx;
+
+impl Curve for Clip {
+    #[inline(always)]
+    fn map(c: [f32; 3]) -> [f32; 3] {
+        c
+    }
+}
+
+impl Curve for Reinhard {
+    #[inline(always)]
+    fn map(c: [f32; 3]) -> [f32; 3] {
+        [c[0] / (1.0 + c[0]), c[1] / (1.0 + c[1]), c[2] / (1.0 + c[2])]
+    }
+}
+
+impl Curve for Aces {
+    #[inline(always)]
+    fn map(c: [f32; 3]) -> [f32; 3] {
+        aces(c)
+    }
+}
+
+impl Curve for Agx {
+    #[inline(always)]
+    fn map(c: [f32; 3]) -> [f32; 3] {
+        agx(c)
+    }
+}
+
+#[inline(always)]
+fn each<C: Curve>(pixels: &[[f32; 3]], gain: f32, encoder: &Encoder, out: &mut [[u8; 3]]) {
+    for (pixels, out) in pixels.chunks(BLOCK).zip(out.chunks_mut(BLOCK)) {
+        let mut lanes = NO_LANES;
+        for (i, pixel) in pixels.iter().enumerate() {
+            [lanes[0][i], lanes[1][i], lanes[2][i]] = *pixel;
+        }
+        for i in 0..BLOCK {
+            let light = |channel: usize| finite_light(lanes[channel][i] * gain);
+            let [r, g, b] = C::map([light(0), light(1), light(2)]);
+            [lanes[0][i], lanes[1][i], lanes[2][i]] = [r, g, b];
+        }
+        let mut bytes = [[0; BLOCK]; 3];
+        for (bytes, lane) in bytes.iter_mut().zip(&lanes) {
+            for i in 0..BLOCK {
+                bytes[i] = encoder.encode(lane[i]);
+            }
+        }
+        for (i, out) in out.iter_mut().enumerate() {
+            *out = [bytes[0][i] as u8, bytes[1][i] as u8, bytes[2][i] as u8];
+        }
+    }
+}
+
+vectorized! {
+    fn map_linear(pixels: &[[f32; 3]], gain: f32, encoder: &Encoder, out: &mut [[u8; 3]]) {
+        each::<Clip>(pixels, gain, encoder, out);
+    }
+    fn map_reinhard(pixels: &[[f32; 3]], gain: f32, encoder: &Encoder, out: &mut [[u8; 3]]) {
+        each::<Reinhard>(pixels, gain, encoder, out);
+    }
+    fn map_aces(pixels: &[[f32; 3]], gain: f32, encoder: &Encoder, out: &mut [[u8; 3]]) {
+        each::<Aces>(pixels, gain, encoder, out);
+    }
+    fn map_agx(pixels: &[[f32; 3]], gain: f32, encoder: &Encoder, out: &mut [[u8; 3]]) {
+        each::<Agx>(pixels, gain, encoder, out);
     }
 }
 
@@ -49,6 +121,7 @@ fn finite_light(x: f32) -> f32 {
 /// Fit of the ACES reference rendering transform and output transform for sRGB displays.
 ///
 /// Source: S. Hill, "ACES fitted", in the BakingLab of M. Pettineo, 2016.
+#[inline(always)]
 fn aces(c: [f32; 3]) -> [f32; 3] {
     const INPUT: Matrix =
         [[0.59719, 0.35458, 0.04823], [0.07600, 0.90834, 0.01566], [0.02840, 0.13383, 0.83777]];
@@ -71,6 +144,7 @@ fn aces(c: [f32; 3]) -> [f32; 3] {
 ///
 /// Sources: T. Sobotka, "AgX", 2022, as adapted by E. Chow for Blender 4.0; sigmoid fitted by
 /// B. Wrensch, "Minimal AgX Implementation", 2023; constants of the Rec. 2020 version in Filament.
+#[inline(always)]
 fn agx(c: [f32; 3]) -> [f32; 3] {
     const REC2020_FROM_REC709: Matrix =
         [[0.6274, 0.3293, 0.0433], [0.0691, 0.9195, 0.0113], [0.0164, 0.0880, 0.8956]];
@@ -97,6 +171,7 @@ fn agx(c: [f32; 3]) -> [f32; 3] {
     multiply(&REC709_FROM_REC2020, display)
 }
 
+#[inline(always)]
 fn sigmoid(x: f32) -> f32 {
     let (x2, x4) = (x * x, x * x * x * x);
     15.5 * x4 * x2 - 40.14 * x4 * x + 31.96 * x4 - 6.868 * x2 * x + 0.4298 * x2 + 0.1191 * x
@@ -116,8 +191,9 @@ fn multiply(m: &Matrix, c: [f32; 3]) -> [f32; 3] {
 struct Encoder {
     /// `thresholds[k]` is the least linear value that becomes byte k + 1 or more.
     thresholds: [f32; 256],
-    /// A byte at most 2 too low for linear values in each 1/1024.
-    starts: [u8; 1025],
+    /// A byte at most 1 too low for linear values in each 1/4096, in which there is at most one
+    /// threshold.
+    starts: [u32; 4096],
 }
 
 impl Encoder {
@@ -131,22 +207,21 @@ impl Encoder {
         for (byte, threshold) in thresholds.iter_mut().take(255).enumerate() {
             *threshold = linear_from_srgb((byte as f32 + 0.5) / 255.0);
         }
-        let mut starts = [0; 1025];
+        let mut starts = [0; 4096];
         for (cell, start) in starts.iter_mut().enumerate() {
-            let linear = cell as f32 / 1024.0;
-            *start = thresholds.iter().take_while(|t| **t <= linear).count() as u8;
+            let linear = cell as f32 / 4096.0;
+            *start = thresholds.iter().take_while(|t| **t <= linear).count() as u32;
         }
         Self { thresholds, starts }
     }
 
     #[inline(always)]
-    fn encode(&self, linear: f32) -> u8 {
-        let linear = if linear > 0.0 { linear.min(1.0) } else { 0.0 };
-        let mut byte = self.starts[(linear * 1024.0) as usize];
-        while self.thresholds[usize::from(byte)] <= linear {
-            byte += 1;
-        }
-        byte
+    fn encode(&self, linear: f32) -> u32 {
+        let linear = if linear > 0.0 { linear } else { 0.0 };
+        const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
+        let linear = if linear < BELOW_ONE { linear } else { BELOW_ONE };
+        let byte = self.starts[((linear * 4096.0) as i32 as u32 & 4095) as usize];
+        byte + u32::from(self.thresholds[(byte & 255) as usize] <= linear)
     }
 }
 
@@ -154,6 +229,7 @@ impl Encoder {
 mod tests {
     use super::*;
     use crate::color::srgb_from_linear;
+    use crate::math::vectorized::at_every_level;
 
     fn mapped(c: [f32; 3], operator: ToneOperator) -> [u8; 3] {
         let mut out = [[0; 3]];
@@ -167,7 +243,7 @@ mod tests {
         for i in 0..=100_000 {
             let x = i as f32 / 100_000.0;
             let exact = 255.0 * srgb_from_linear(x);
-            let byte = f32::from(encoder.encode(x));
+            let byte = encoder.encode(x) as f32;
             assert!((byte - exact).abs() <= 0.5 + 1e-3, "{x} is {byte}, not {exact}");
         }
     }
@@ -198,6 +274,24 @@ mod tests {
                 assert!(r >= previous, "{operator:?} falls at {x}");
                 assert!(r.abs_diff(g) <= 1 && g.abs_diff(b) <= 1, "{operator:?} tints {x}");
                 previous = r;
+            }
+        }
+    }
+
+    #[test]
+    fn bytes_are_the_same_on_every_processor() {
+        let light = |i: usize| 1e-5 * 1.1_f32.powi(i as i32) - 1e-4;
+        let pixels: Vec<[f32; 3]> = (0..157).map(|i| [light(i), light(157 - i), 0.5]).collect();
+        for operator in
+            [ToneOperator::Linear, ToneOperator::Reinhard, ToneOperator::Aces, ToneOperator::Agx]
+        {
+            let mapped = at_every_level(|| {
+                let mut out = vec![[0; 3]; pixels.len()];
+                map_to_srgb8(&pixels, 0.3, operator, &mut out);
+                out
+            });
+            for (level, bytes) in &mapped {
+                assert_eq!(*bytes, mapped[0].1, "{operator:?}, {level:?}");
             }
         }
     }

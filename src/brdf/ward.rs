@@ -8,11 +8,11 @@
 //! and A. Dür, "A New Ward BRDF Model with Bounded Albedo", CGF 29(4), 2010; B. Walter, "Notes on
 //! the Ward BRDF", Cornell PCG-05-06, 2005.
 
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::PI;
 
 use glam::Vec3;
 
-use crate::math::portable;
+use crate::math::elementary;
 
 /// Which normalisation is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +38,7 @@ pub struct Ward {
 
 impl Ward {
     /// Value of the lobe in 1/sr; reciprocal; 0 unless both directions are above the surface.
+    #[inline(always)]
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> f32 {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return 0.0;
@@ -48,7 +49,7 @@ impl Ward {
             WardForm::Bounded => {
                 let z2 = half.z * half.z;
                 let exponent = -self.slope_squared(half) / z2;
-                portable::exp(exponent) * half.length_squared() / (PI * area * (z2 * z2))
+                elementary::exp(exponent) * half.length_squared() / (PI * area * (z2 * z2))
             }
             WardForm::Original | WardForm::Duer => {
                 let cosines = wo.z * wi.z;
@@ -60,35 +61,41 @@ impl Ward {
 
     /// A direction towards the light for two numbers in [0, 1), with density [`Ward::pdf`]; `None`
     /// where the sampled half vector sends it below the surface (a share that the density lacks).
-    pub fn sample(&self, wo: Vec3, [u, v]: [f32; 2]) -> Option<Vec3> {
-        let (sin, cos) = portable::sin_cos(TAU * u);
+    pub fn sample(&self, wo: Vec3, u: [f32; 2]) -> Option<Vec3> {
+        let (wi, is_above) = self.mirrored(wo, u);
+        is_above.then_some(wi)
+    }
+
+    /// The direction of [`Ward::sample`], and whether it is one.
+    #[inline(always)]
+    pub(crate) fn mirrored(&self, wo: Vec3, [u, v]: [f32; 2]) -> (Vec3, bool) {
+        let (sin, cos) = elementary::sin_cos_turns(u);
         let along = Vec3::new(self.alpha_x * cos, self.alpha_y * sin, 0.0);
         let length = along.length();
         let (x, y) = (along.x / length, along.y / length);
-        let k = (x / self.alpha_x).powi(2) + (y / self.alpha_y).powi(2);
-        let drop = -portable::ln(1.0 - v);
-        let half = match self.form {
+        let (slope_x, slope_y) = (x / self.alpha_x, y / self.alpha_y);
+        let k = slope_x * slope_x + slope_y * slope_y;
+        let drop = -elementary::ln_of_share(1.0 - v);
+        let (half, is_up) = match self.form {
             WardForm::Bounded => {
                 let tan = (drop / k).sqrt();
-                Vec3::new(x * tan, y * tan, 1.0).normalize()
+                (Vec3::new(x * tan, y * tan, 1.0).normalize(), true)
             }
             WardForm::Original | WardForm::Duer => {
                 // exp(-2 (1 - cos) k): exponential in 1 - cos, cut at the horizon.
                 let one_minus_cos = drop / (2.0 * k);
-                if one_minus_cos >= 1.0 {
-                    return None;
-                }
                 let sin = (one_minus_cos * (2.0 - one_minus_cos)).sqrt();
-                Vec3::new(x * sin, y * sin, 1.0 - one_minus_cos)
+                (Vec3::new(x * sin, y * sin, 1.0 - one_minus_cos), one_minus_cos < 1.0)
             }
         };
         let cos_half = wo.dot(half);
         let wi = 2.0 * cos_half * half - wo;
-        (cos_half > 0.0 && wi.z > 0.0).then_some(wi)
+        (wi, is_up && cos_half > 0.0 && wi.z > 0.0)
     }
 
     /// Density of [`Ward::sample`] per solid angle of `wi`. Integrates to less than 1 where half
     /// vectors are rejected.
+    #[inline(always)]
     pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return 0.0;
@@ -98,7 +105,7 @@ impl Ward {
         let of_half = match self.form {
             WardForm::Bounded => {
                 let z2 = half.z * half.z;
-                portable::exp(-self.slope_squared(half) / z2) / (PI * area * z2 * half.z)
+                elementary::exp(-self.slope_squared(half) / z2) / (PI * area * z2 * half.z)
             }
             WardForm::Original | WardForm::Duer => self.cap_lobe(half) / (PI * area),
         };
@@ -106,13 +113,15 @@ impl Ward {
     }
 
     /// (h.x / alpha_x)² + (h.y / alpha_y)².
+    #[inline(always)]
     fn slope_squared(&self, half: Vec3) -> f32 {
         let (x, y) = (half.x / self.alpha_x, half.y / self.alpha_y);
         x * x + y * y
     }
 
     /// Ward's exponential of a unit half vector.
+    #[inline(always)]
     fn cap_lobe(&self, half: Vec3) -> f32 {
-        portable::exp(-2.0 * self.slope_squared(half) / (1.0 + half.z))
+        elementary::exp(-2.0 * self.slope_squared(half) / (1.0 + half.z))
     }
 }

@@ -4,8 +4,10 @@ use glam::{DVec3, Vec3};
 
 use crate::geometry::mesh_tree::TracedMesh;
 use crate::geometry::nearest::{Nearest, Search};
+use crate::geometry::shape::{Crossings, ObjectRays};
 use crate::geometry::{AcceleratorKind, Shape, TraversalCost};
-use crate::math::{Aabb, PrimitiveId, Ray, RayBatch, Transform};
+use crate::math::vectorized::{BLOCK, set_dvec3, set_vec3, vec3, vectorized};
+use crate::math::{Aabb, PrimitiveId, Ray, RayBatch, RayBlock, Transform};
 
 /// A shape and the transform that puts it into the world.
 #[derive(Clone, Debug, PartialEq)]
@@ -133,18 +135,16 @@ impl Instance {
                     tree.intersect_batch(&self.object_rays(rays), object, nearest);
                 }
             }
-            Shape::Mesh(_)
-            | Shape::Sphere { .. }
+            Shape::Mesh(_) => {}
+            Shape::Sphere { .. }
             | Shape::Plane { .. }
             | Shape::Box { .. }
             | Shape::Cone { .. }
             | Shape::Cylinder { .. } => {
-                for (index, nearest) in nearest.iter_mut().enumerate() {
-                    let ray = rays.ray(index);
-                    let mut search = Search::from(&ray, *nearest);
-                    self.intersect(&ray, object, kind, &mut search);
-                    *nearest = search.nearest;
-                }
+                self.each_crossing(rays, |index, t, primitive| {
+                    let (nearest, source) = (&mut nearest[index], rays.source[index]);
+                    nearest.offer(t, PrimitiveId { object, primitive }, source);
+                });
             }
         }
     }
@@ -166,14 +166,37 @@ impl Instance {
                     tree.occluded_batch(&self.object_rays(rays), object, blocked);
                 }
             }
-            Shape::Mesh(_)
-            | Shape::Sphere { .. }
+            Shape::Mesh(_) => {}
+            Shape::Sphere { .. }
             | Shape::Plane { .. }
             | Shape::Box { .. }
             | Shape::Cone { .. }
             | Shape::Cylinder { .. } => {
-                for (index, blocked) in blocked.iter_mut().enumerate() {
-                    *blocked = *blocked || self.occluded(&rays.ray(index), object, kind);
+                self.each_crossing(rays, |index, t, primitive| {
+                    let mut nearest = Nearest::new(rays.t_max[index]);
+                    let id = PrimitiveId { object, primitive };
+                    nearest.offer(t, id, rays.source[index]);
+                    blocked[index] |= nearest.is_hit();
+                });
+            }
+        }
+    }
+
+    /// Calls with the number of a ray, the parameter and the primitive of each crossing of a solid.
+    fn each_crossing(&self, rays: &RayBatch, mut call: impl FnMut(usize, f32, u32)) {
+        let mut crossings = Crossings::NONE;
+        let mut theirs = ObjectRays { origin: [[0.0; BLOCK]; 3], direction: [[0.0; BLOCK]; 3] };
+        for start in (0..rays.len()).step_by(BLOCK) {
+            let n = BLOCK.min(rays.len() - start);
+            let ours = rays.block(start, n);
+            widened(&self.transform, &ours, &mut theirs);
+            self.shape.crossings_of_block(&theirs, &mut crossings);
+            for i in 0..n {
+                for k in 0..2 {
+                    let t = crossings.t[k][i];
+                    if t > 0.0 {
+                        call(start + i, t, crossings.primitive[k][i]);
+                    }
                 }
             }
         }
@@ -182,8 +205,11 @@ impl Instance {
     /// Rays of the world as a mesh sees them, with one rounding.
     fn object_rays(&self, rays: &RayBatch) -> RayBatch {
         let mut batch = RayBatch::default();
-        for index in 0..rays.len() {
-            batch.push(self.object_ray(&rays.ray(index)));
+        for start in (0..rays.len()).step_by(BLOCK) {
+            let n = BLOCK.min(rays.len() - start);
+            let mut block = rays.block(start, n);
+            moved(&self.transform, &mut block);
+            batch.append(&block, n);
         }
         batch
     }
@@ -210,6 +236,34 @@ impl Instance {
             return call(ray);
         }
         call(&self.object_ray(ray));
+    }
+}
+
+vectorized! {
+    /// To object space, in double precision.
+    fn widened(transform: &Transform, rays: &RayBlock, theirs: &mut ObjectRays) {
+        if transform.is_identity() {
+            for i in 0..BLOCK {
+                set_dvec3(&mut theirs.origin, i, vec3(&rays.origin, i).as_dvec3());
+                set_dvec3(&mut theirs.direction, i, vec3(&rays.direction, i).as_dvec3());
+            }
+        } else {
+            for i in 0..BLOCK {
+                let origin = transform.unmoved_point(vec3(&rays.origin, i).as_dvec3());
+                let direction = transform.unmoved_vector(vec3(&rays.direction, i).as_dvec3());
+                set_dvec3(&mut theirs.origin, i, origin);
+                set_dvec3(&mut theirs.direction, i, direction);
+            }
+        }
+    }
+    /// To the space of an object that is not where it was made.
+    fn moved(transform: &Transform, rays: &mut RayBlock) {
+        for i in 0..BLOCK {
+            let origin = transform.unmoved_point(vec3(&rays.origin, i).as_dvec3());
+            let direction = transform.unmoved_vector(vec3(&rays.direction, i).as_dvec3());
+            set_vec3(&mut rays.origin, i, origin.as_vec3());
+            set_vec3(&mut rays.direction, i, direction.as_vec3());
+        }
     }
 }
 

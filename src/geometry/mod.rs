@@ -34,6 +34,7 @@ pub use mesh_tree::{MeshTree, TracedMesh};
 pub use nearest::Hit;
 pub use shape::Shape;
 pub use surface::Surface;
+pub(crate) use surface::{HitBlock, SurfaceBlock};
 
 /// How rays find what they meet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -200,24 +201,30 @@ impl Geometry {
     pub fn intersect(&self, rays: &RayBatch, hits: &mut Vec<Option<Hit>>) {
         let mut nearest: Vec<Nearest> = rays.t_max.iter().map(|t| Nearest::new(*t)).collect();
         let mut selector = Selector::new(rays);
+        // Of what was found so far; from the first box on.
+        let mut limits: Vec<f32> = Vec::new();
         let mut selected = Vec::new();
         for id in &self.listed {
             let instance = &self.instances[*id as usize];
             let Some(bounds) = self.box_of(instance) else {
                 instance.intersect_batch(rays, *id, self.kind, &mut nearest);
+                limits.clear();
                 continue;
             };
-            selector.select(&bounds, |place| nearest[place].t(), &mut selected);
-            if selected.len() == rays.len() {
-                instance.intersect_batch(rays, *id, self.kind, &mut nearest);
-            } else if !selected.is_empty() {
-                let mut theirs: Vec<Nearest> =
-                    selected.iter().map(|place| nearest[*place as usize]).collect();
-                let gathered = rays.gathered(&selected);
-                instance.intersect_batch(&gathered, *id, self.kind, &mut theirs);
-                for (place, theirs) in selected.iter().zip(theirs) {
-                    nearest[*place as usize] = theirs;
-                }
+            if limits.is_empty() {
+                limits.extend(nearest.iter().map(Nearest::t));
+            }
+            selector.select(&bounds, &limits, &mut selected);
+            if selected.is_empty() {
+                continue;
+            }
+            let mut theirs: Vec<Nearest> =
+                selected.iter().map(|place| nearest[*place as usize]).collect();
+            let gathered = rays.gathered(&selected);
+            instance.intersect_batch(&gathered, *id, self.kind, &mut theirs);
+            for (place, theirs) in selected.iter().zip(theirs) {
+                nearest[*place as usize] = theirs;
+                limits[*place as usize] = theirs.t();
             }
         }
         if self.tree.is_some() {
@@ -244,20 +251,26 @@ impl Geometry {
         &self,
         rays: &RayBatch,
         clear: impl Fn(Hit) -> Option<Rgb>,
-        is_clear: impl Fn(u32) -> bool,
+        is_clear: impl Fn(u32) -> bool + Copy,
         shares: &mut Vec<Rgb>,
     ) {
         let mut blocked = Vec::new();
         self.occluded_by(rays, |object| !is_clear(object), &mut blocked);
+        // Most rays meet nothing that is clear.
+        let mut is_tinted = Vec::new();
+        self.occluded_by(rays, is_clear, &mut is_tinted);
         shares.clear();
         shares.extend(blocked.iter().enumerate().map(|(i, is_blocked)| {
             if *is_blocked {
                 return Rgb::ZERO;
             }
+            if !is_tinted[i] {
+                return Rgb::ONE;
+            }
             let ray = rays.ray(i);
             let mut share = Rgb::ONE;
             let mut after = (0.0, PrimitiveId::NONE);
-            while let Some(hit) = self.next_hit(&ray, after, &is_clear) {
+            while let Some(hit) = self.next_hit(&ray, after, is_clear) {
                 let Some(factor) = clear(hit) else { return Rgb::ZERO };
                 share *= factor;
                 if share == Rgb::ZERO {
@@ -279,22 +292,32 @@ impl Geometry {
         blocked.clear();
         blocked.resize(rays.len(), false);
         let mut selector = Selector::new(rays);
+        // Below 0 where a ray is blocked; from the first box on.
+        let mut limits: Vec<f32> = Vec::new();
         let mut selected = Vec::new();
         for id in self.listed.iter().filter(|id| take(**id)) {
             let instance = &self.instances[*id as usize];
             let Some(bounds) = self.box_of(instance) else {
                 instance.occluded_batch(rays, *id, self.kind, blocked);
+                limits.clear();
                 continue;
             };
-            let limit = |place: usize| if blocked[place] { -1.0 } else { rays.t_max[place] };
-            selector.select(&bounds, limit, &mut selected);
+            if limits.is_empty() {
+                let limit =
+                    |(is_blocked, t_max): (&bool, &f32)| if *is_blocked { -1.0 } else { *t_max };
+                limits.extend(blocked.iter().zip(&rays.t_max).map(limit));
+            }
+            selector.select(&bounds, &limits, &mut selected);
             if selected.is_empty() {
                 continue;
             }
             let mut theirs = vec![false; selected.len()];
             instance.occluded_batch(&rays.gathered(&selected), *id, self.kind, &mut theirs);
             for (place, is_blocked) in selected.iter().zip(theirs) {
-                blocked[*place as usize] |= is_blocked;
+                if is_blocked {
+                    blocked[*place as usize] = true;
+                    limits[*place as usize] = -1.0;
+                }
             }
         }
         if self.tree.is_some() {

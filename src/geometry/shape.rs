@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use crate::geometry::mesh_tree::TracedMesh;
 use crate::math::Aabb;
+use crate::math::vectorized::{BLOCK, DLane3, Lane, dvec3, vectorized};
 
 /// A shape in object space. Directions are unit vectors, radii above 0.
 #[derive(Clone, Debug)]
@@ -102,14 +103,17 @@ struct Stay {
 }
 
 impl Stay {
+    #[inline(always)]
     fn everywhere(primitive: u32) -> Self {
         Self::between(f64::NEG_INFINITY, f64::INFINITY, primitive)
     }
 
+    #[inline(always)]
     fn between(enter: f64, exit: f64, primitive: u32) -> Self {
         Self { enter: End { t: enter, primitive }, exit: End { t: exit, primitive } }
     }
 
+    #[inline(always)]
     fn and(self, other: Self) -> Self {
         let enter = if other.enter.t > self.enter.t { other.enter } else { self.enter };
         let exit = if other.exit.t < self.exit.t { other.exit } else { self.exit };
@@ -150,11 +154,11 @@ impl Shape {
         let stay = match self {
             Self::Mesh(_) => None,
             Self::Plane { point, normal } => {
-                let t = (*point - origin).dot(*normal) / direction.dot(*normal);
+                let t = plane_root(origin, direction, *point, *normal);
                 return [t.is_finite().then_some((t, 0)), None];
             }
             Self::Sphere { center, radius } => in_sphere(origin - *center, direction, *radius),
-            Self::Box { min, max } => in_box(*min - origin, *max - origin, direction),
+            Self::Box { min, max } => Some(in_box(*min - origin, *max - origin, direction)),
             Self::Cylinder { base, top, radius } => {
                 let axis = *top - *base;
                 let height = axis.length();
@@ -185,44 +189,144 @@ impl Shape {
     }
 }
 
+/// What [`Shape::crossings`] finds for a block of rays: parameters, NaN where there is none, and
+/// primitives.
+pub(super) struct Crossings {
+    pub(super) t: [Lane<f32>; 2],
+    pub(super) primitive: [Lane<u32>; 2],
+}
+
+impl Crossings {
+    /// Nothing found.
+    pub(super) const NONE: Self = Self { t: [[f32::NAN; BLOCK]; 2], primitive: [[0; BLOCK]; 2] };
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, stay: Stay) {
+        let Stay { enter, exit } = stay;
+        let is_met = enter.t <= exit.t;
+        for (k, end) in [enter, exit].into_iter().enumerate() {
+            let is_found = is_met && end.t.is_finite();
+            self.t[k][i] = if is_found { end.t as f32 } else { f32::NAN };
+            self.primitive[k][i] = end.primitive;
+        }
+    }
+}
+
+impl Shape {
+    /// [`Shape::crossings`] for a block of rays in object space.
+    pub(super) fn crossings_of_block(&self, rays: &ObjectRays, crossings: &mut Crossings) {
+        match self {
+            Self::Mesh(_) => {}
+            Self::Plane { point, normal } => plane_crossings(*point, *normal, rays, crossings),
+            Self::Sphere { center, radius } => sphere_crossings(*center, *radius, rays, crossings),
+            Self::Box { min, max } => box_crossings(*min, *max, rays, crossings),
+            Self::Cone { .. } | Self::Cylinder { .. } => {
+                for i in 0..BLOCK {
+                    let (origin, direction) = (dvec3(&rays.origin, i), dvec3(&rays.direction, i));
+                    for (k, crossing) in self.crossings(origin, direction).into_iter().enumerate() {
+                        let (t, primitive) = crossing.unwrap_or((f64::NAN, 0));
+                        (crossings.t[k][i], crossings.primitive[k][i]) = (t as f32, primitive);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A block of rays in object space.
+pub(super) struct ObjectRays {
+    pub(super) origin: DLane3,
+    pub(super) direction: DLane3,
+}
+
+vectorized! {
+    fn plane_crossings(
+        point: DVec3,
+        normal: DVec3,
+        rays: &ObjectRays,
+        crossings: &mut Crossings,
+    ) {
+        for i in 0..BLOCK {
+            let t = plane_root(dvec3(&rays.origin, i), dvec3(&rays.direction, i), point, normal);
+            crossings.t[0][i] = if t.is_finite() { t as f32 } else { f32::NAN };
+        }
+    }
+    fn sphere_crossings(
+        center: DVec3,
+        radius: f64,
+        rays: &ObjectRays,
+        crossings: &mut Crossings,
+    ) {
+        for i in 0..BLOCK {
+            let (origin, direction) = (dvec3(&rays.origin, i), dvec3(&rays.direction, i));
+            let (discriminant, t0, t1) = sphere_roots(origin - center, direction, radius);
+            let (enter, exit) = (t0.min(t1), t0.max(t1));
+            let limit = if discriminant >= 0.0 { exit } else { f64::NEG_INFINITY };
+            crossings.set(i, Stay::between(enter, limit, 0));
+        }
+    }
+    fn box_crossings(min: DVec3, max: DVec3, rays: &ObjectRays, crossings: &mut Crossings) {
+        for i in 0..BLOCK {
+            let (origin, direction) = (dvec3(&rays.origin, i), dvec3(&rays.direction, i));
+            crossings.set(i, in_box(min - origin, max - origin, direction));
+        }
+    }
+}
+
 /// Half extents of a disk's bounds.
 fn disk_reach(axis: DVec3, radius: f64) -> DVec3 {
     let w = axis.normalize();
     (DVec3::ONE - w * w).max(DVec3::ZERO).map(f64::sqrt) * radius
 }
 
+/// Discriminant (below 0 at a miss) and the parameters at which a line crosses a sphere, in no order.
+/// `f` is the origin as seen from the centre.
+///
 /// Source: E. Haines, J. Günther and T. Akenine-Möller, "Precision Improvements for Ray/Sphere
 /// Intersection", Ray Tracing Gems, 2019, chapter 7.
-fn in_sphere(f: DVec3, d: DVec3, radius: f64) -> Option<Stay> {
+#[inline(always)]
+pub(super) fn sphere_roots(f: DVec3, d: DVec3, radius: f64) -> (f64, f64, f64) {
     let a = d.length_squared();
     let b = -f.dot(d);
     let miss = f + d * (b / a);
     let discriminant = radius * radius - miss.length_squared();
-    if discriminant < 0.0 {
-        return None;
-    }
     let c = f.length_squared() - radius * radius;
     let q = b + (a * discriminant).sqrt().copysign(b);
     let (t0, t1) = if q == 0.0 { (0.0, 0.0) } else { (c / q, q / a) };
-    Some(Stay::between(t0.min(t1), t0.max(t1), 0))
+    (discriminant, t0, t1)
+}
+
+fn in_sphere(f: DVec3, d: DVec3, radius: f64) -> Option<Stay> {
+    let (discriminant, t0, t1) = sphere_roots(f, d, radius);
+    (discriminant >= 0.0).then(|| Stay::between(t0.min(t1), t0.max(t1), 0))
+}
+
+/// Parameter at which a line crosses a plane; not finite where it is parallel.
+#[inline(always)]
+pub(super) fn plane_root(origin: DVec3, direction: DVec3, point: DVec3, normal: DVec3) -> f64 {
+    (point - origin).dot(normal) / direction.dot(normal)
 }
 
 /// `low` and `high` are the corners as seen from the ray's origin. Faces are numbered -x, +x, -y, …
-fn in_box(low: DVec3, high: DVec3, d: DVec3) -> Option<Stay> {
+#[inline(always)]
+fn in_box(low: DVec3, high: DVec3, d: DVec3) -> Stay {
     let mut stay = Stay::everywhere(0);
     for axis in 0..3 {
-        if d[axis] == 0.0 {
-            if low[axis] > 0.0 || high[axis] < 0.0 {
-                return None;
-            }
-            continue;
-        }
-        let below = End { t: low[axis] / d[axis], primitive: 2 * axis as u32 };
-        let above = End { t: high[axis] / d[axis], primitive: 2 * axis as u32 + 1 };
-        let (enter, exit) = if d[axis] > 0.0 { (below, above) } else { (above, below) };
+        let primitive = 2 * axis as u32;
+        let below = End { t: low[axis] / d[axis], primitive };
+        let above = End { t: high[axis] / d[axis], primitive: primitive + 1 };
+        let is_along = d[axis] > 0.0;
+        let (enter, exit) =
+            (if is_along { below } else { above }, if is_along { above } else { below });
+        // A ray along the faces is between them everywhere or nowhere.
+        let is_across = d[axis] == 0.0;
+        let is_between = low[axis] <= 0.0 && high[axis] >= 0.0;
+        let limit = if is_between { f64::INFINITY } else { f64::NEG_INFINITY };
+        let enter = End { t: if is_across { -limit } else { enter.t }, ..enter };
+        let exit = End { t: if is_across { limit } else { exit.t }, ..exit };
         stay = stay.and(Stay { enter, exit });
     }
-    Some(stay)
+    stay
 }
 
 /// A ray split into its part along an axis and its part across it.

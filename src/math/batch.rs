@@ -2,6 +2,8 @@
 
 use glam::Vec3;
 
+use crate::math::vectorized::{BLOCK, Lane, Lane3, NO_LANES};
+
 /// A half line from `origin` along `direction`, up to parameter `t_max` (exclusive).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
@@ -66,6 +68,31 @@ impl RayBatch {
         self.source.push(ray.source);
     }
 
+    /// Appends the first rays of a block.
+    #[inline]
+    pub(crate) fn append(&mut self, block: &RayBlock, n: usize) {
+        for axis in 0..3 {
+            self.origin[axis].extend_from_slice(&block.origin[axis][..n]);
+            self.direction[axis].extend_from_slice(&block.direction[axis][..n]);
+        }
+        self.t_max.extend_from_slice(&block.t_max[..n]);
+        self.source.extend_from_slice(&block.source[..n]);
+    }
+
+    /// A block of `n` rays from `start` on.
+    #[inline]
+    pub(crate) fn block(&self, start: usize, n: usize) -> RayBlock {
+        let mut block = RayBlock::IDLE;
+        let range = start..start + n;
+        for axis in 0..3 {
+            block.origin[axis][..n].copy_from_slice(&self.origin[axis][range.clone()]);
+            block.direction[axis][..n].copy_from_slice(&self.direction[axis][range.clone()]);
+        }
+        block.t_max[..n].copy_from_slice(&self.t_max[range.clone()]);
+        block.source[..n].copy_from_slice(&self.source[range]);
+        block
+    }
+
     /// The ray at `index`.
     #[inline(always)]
     pub fn ray(&self, index: usize) -> Ray {
@@ -83,11 +110,12 @@ impl RayBatch {
 
     /// The rays at these places, in their order.
     pub fn gathered(&self, places: &[u32]) -> Self {
-        let mut gathered = Self::default();
-        for place in places {
-            gathered.push(self.ray(*place as usize));
+        Self {
+            origin: self.origin.each_ref().map(|column| picked(column, places)),
+            direction: self.direction.each_ref().map(|column| picked(column, places)),
+            t_max: picked(&self.t_max, places),
+            source: picked(&self.source, places),
         }
-        gathered
     }
 
     /// Number of rays.
@@ -109,4 +137,28 @@ impl RayBatch {
         self.t_max.clear();
         self.source.clear();
     }
+}
+
+#[inline]
+fn picked<T: Copy>(column: &[T], places: &[u32]) -> Vec<T> {
+    places.iter().map(|place| column[*place as usize]).collect()
+}
+
+/// A block of rays.
+#[derive(Clone, Debug)]
+pub(crate) struct RayBlock {
+    pub(crate) origin: Lane3,
+    pub(crate) direction: Lane3,
+    pub(crate) t_max: Lane<f32>,
+    pub(crate) source: Lane<PrimitiveId>,
+}
+
+impl RayBlock {
+    /// Rays without end, from nowhere.
+    pub(crate) const IDLE: Self = Self {
+        origin: NO_LANES,
+        direction: NO_LANES,
+        t_max: [f32::INFINITY; BLOCK],
+        source: [PrimitiveId::NONE; BLOCK],
+    };
 }

@@ -16,21 +16,30 @@ pub struct Frame {
 impl Frame {
     /// A frame around a unit `z` whose `x` is the projection of `tangent`; where that projection
     /// is shorter than 1e-4, [0, 0, 1] takes the tangent's place, then [0, 1, 0].
+    #[inline(always)]
     pub fn from_normal_tangent(z: Vec3, tangent: Vec3) -> Self {
-        for candidate in [tangent, Vec3::Z, Vec3::Y] {
+        let project = |candidate: Vec3| {
             let projection = candidate - z * candidate.dot(z);
-            let length_squared = projection.length_squared();
-            if length_squared >= 1e-8 {
-                let x = projection / length_squared.sqrt();
-                return Self { x, y: z.cross(x), z };
-            }
-        }
-        Self::from_normal(z)
+            (projection, projection.length_squared())
+        };
+        const SHORT: f32 = 1e-8;
+        let (x, length_squared) = project(tangent);
+        let is_short = length_squared < SHORT;
+        let (along_z, along_z_squared) = project(Vec3::Z);
+        let (along_y, along_y_squared) = project(Vec3::Y);
+        // Never are both of these short.
+        let is_along_z = along_z_squared < SHORT;
+        let other = if is_along_z { along_y } else { along_z };
+        let other_squared = if is_along_z { along_y_squared } else { along_z_squared };
+        let x = if is_short { other } else { x };
+        let x = x / (if is_short { other_squared } else { length_squared }).sqrt();
+        Self { x, y: z.cross(x), z }
     }
 
     /// Any frame around a unit `z`, without branches that would tear it.
     ///
     /// Source: T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
+    #[inline(always)]
     pub fn from_normal(z: Vec3) -> Self {
         let sign = 1.0_f32.copysign(z.z);
         let a = -1.0 / (sign + z.z);
@@ -43,13 +52,13 @@ impl Frame {
     }
 
     /// World direction of a direction in this frame.
-    #[inline]
+    #[inline(always)]
     pub fn world_from_local(&self, v: Vec3) -> Vec3 {
         self.x * v.x + self.y * v.y + self.z * v.z
     }
 
     /// A world direction as seen in this frame.
-    #[inline]
+    #[inline(always)]
     pub fn local_from_world(&self, v: Vec3) -> Vec3 {
         Vec3::new(self.x.dot(v), self.y.dot(v), self.z.dot(v))
     }

@@ -50,7 +50,7 @@ static ORDER_TABLES: [[[u32; 256]; N_BYTES]; N_JOINT] = order_tables();
 static SHIFT_TABLE: [[u32; 2]; 256] = shift_table();
 
 /// The index at which sample `index` (below 2^24) reads the first sequence, for pair `1 + joint`.
-#[inline]
+#[inline(always)]
 pub(super) fn reordered(joint: usize, index: u32) -> u32 {
     let [low, middle, high] = &ORDER_TABLES[joint];
     let byte = |shift: u32| (index >> shift & 0xff) as usize;
@@ -58,14 +58,14 @@ pub(super) fn reordered(joint: usize, index: u32) -> u32 {
 }
 
 /// The shift of both numbers for a place in a block.
-#[inline]
+#[inline(always)]
 pub(super) fn shift(place: u8) -> [u32; 2] {
     SHIFT_TABLE[place as usize]
 }
 
 /// A pixel's place in its block: the bits of column and row in turn, from the highest (in bit 0) to
 /// the lowest, so that places with equal low bits form an aligned block.
-#[inline]
+#[inline(always)]
 pub(super) fn place_of(x: u32, y: u32) -> u8 {
     let spread = |v: u32| {
         let v = (v % BLOCK_SIZE).reverse_bits() >> 28;

@@ -7,9 +7,12 @@
 
 use glam::DVec3;
 
+use crate::math::elementary::floor;
+use crate::math::vectorized::{BLOCK, DLane3, Lane, dvec3, vectorized};
+
 /// Perlin's permutation of 0..=255 (2002).
 #[rustfmt::skip]
-const PERMUTATION: [u8; 256] = [
+static PERMUTATION: [u32; 256] = [
     151, 160, 137, 91, 90, 15, 131, 13, 201, 95, 96, 53, 194, 233, 7, 225, 140, 36, 103, 30, 69,
     142, 8, 99, 37, 240, 21, 10, 23, 190, 6, 148, 247, 120, 234, 75, 0, 26, 197, 62, 94, 252, 219,
     203, 117, 35, 11, 32, 57, 177, 33, 88, 237, 149, 56, 87, 174, 20, 125, 136, 171, 168, 68, 175,
@@ -26,27 +29,64 @@ const PERMUTATION: [u8; 256] = [
 ];
 
 /// Gradient noise: 0 at integer points, smooth between them, period 256, within ±1.04.
+#[inline(always)]
 pub fn perlin(p: DVec3) -> f64 {
-    if !p.is_finite() {
-        return 0.0;
-    }
-    let cell = p.floor();
+    let cell = DVec3::new(floor(p.x), floor(p.y), floor(p.z));
     let f = p - cell;
-    let [x, y, z] = [cell.x, cell.y, cell.z].map(|c| (c.rem_euclid(256.0)) as usize & 255);
-    let hash = |i: usize, next: usize| usize::from(PERMUTATION[(i + next) & 255]);
+    let [x, y, z] = [within_period(cell.x), within_period(cell.y), within_period(cell.z)];
     let (u, v, w) = (fade(f.x), fade(f.y), fade(f.z));
-    let (a, b) = (hash(x, 0), hash(x + 1, 0));
-    let (aa, ab) = (hash(a, y), hash(a, y + 1));
-    let (ba, bb) = (hash(b, y), hash(b, y + 1));
-    let corner = |edge: usize, dx: f64, dy: f64, dz: f64, dz_id: usize| {
-        gradient(hash(edge, z + dz_id), f.x - dx, f.y - dy, f.z - dz)
-    };
-    let layer = |dz: f64, dz_id: usize| {
-        let near = lerp(u, corner(aa, 0.0, 0.0, dz, dz_id), corner(ba, 1.0, 0.0, dz, dz_id));
-        let far = lerp(u, corner(ab, 0.0, 1.0, dz, dz_id), corner(bb, 1.0, 1.0, dz, dz_id));
-        lerp(v, near, far)
-    };
-    lerp(w, layer(0.0, 0), layer(1.0, 1))
+    let (a, b) = (hash(x), hash(x + 1));
+    let (aa, ab) = (hash(a + y), hash(a + y + 1));
+    let (ba, bb) = (hash(b + y), hash(b + y + 1));
+    let near = layer([aa, ba, ab, bb], z, f, u, v);
+    let far = layer([aa, ba, ab, bb], z + 1, f - DVec3::Z, u, v);
+    let noise = lerp(w, near, far);
+    if p.is_finite() { noise } else { 0.0 }
+}
+
+/// The four corners of a cell at one height.
+#[inline(always)]
+fn layer([aa, ba, ab, bb]: [u32; 4], z: u32, f: DVec3, u: f64, v: f64) -> f64 {
+    let (x, y) = (f.x - 1.0, f.y - 1.0);
+    let near = lerp(u, gradient(hash(aa + z), f.x, f.y, f.z), gradient(hash(ba + z), x, f.y, f.z));
+    let far = lerp(u, gradient(hash(ab + z), f.x, y, f.z), gradient(hash(bb + z), x, y, f.z));
+    lerp(v, near, far)
+}
+
+#[inline(always)]
+fn hash(i: u32) -> u32 {
+    PERMUTATION[(i & 255) as usize]
+}
+
+/// An integer modulo 256.
+#[inline(always)]
+fn within_period(cell: f64) -> u32 {
+    const TO_BITS: f64 = 4_503_599_627_370_496.0;
+    let rest = cell - 256.0 * floor(cell / 256.0);
+    (rest + TO_BITS).to_bits() as u32 & 255
+}
+
+vectorized! {
+    /// [`perlin`] at every point of a block, all of them shifted.
+    pub(crate) fn perlin_block(p: &DLane3, shift: DVec3, values: &mut Lane<f64>) {
+        for i in 0..BLOCK {
+            values[i] = perlin(dvec3(p, i) + shift);
+        }
+    }
+    /// Adds one octave.
+    fn add_octave(
+        p: &DLane3,
+        shift: DVec3,
+        frequency: f64,
+        amplitude: f64,
+        is_folded: bool,
+        totals: &mut Lane<f64>,
+    ) {
+        for i in 0..BLOCK {
+            let noise = perlin(dvec3(p, i) * frequency + shift);
+            totals[i] += amplitude * if is_folded { noise.abs() } else { noise };
+        }
+    }
 }
 
 /// How a sum of noise over octaves is made.
@@ -71,43 +111,62 @@ impl Octaves {
         self.sum(p, f64::abs)
     }
 
-    /// Later octaves are shifted, so that the zeros that all of them have at integer points do not
-    /// fall together.
-    fn sum(&self, p: DVec3, shape: impl Fn(f64) -> f64) -> f64 {
-        const SHIFT: DVec3 = DVec3::new(19.19, 47.43, 73.71);
-        let (mut total, mut weight) = (0.0, 0.0);
-        let (mut frequency, mut amplitude) = (1.0, 1.0);
-        for octave in 0..self.count {
-            total += amplitude * shape(perlin(p * frequency + SHIFT * f64::from(octave)));
+    /// [`Octaves::fbm`] at a block of points, or [`Octaves::turbulence`].
+    pub(crate) fn sum_block(&self, p: &DLane3, is_folded: bool) -> Lane<f64> {
+        let (mut totals, mut weight) = ([0.0; BLOCK], 0.0);
+        for (shift, frequency, amplitude) in self.terms() {
+            add_octave(p, shift, frequency, amplitude, is_folded, &mut totals);
             weight += amplitude;
+        }
+        totals.map(|total| mean(total, weight))
+    }
+
+    fn sum(&self, p: DVec3, shape: impl Fn(f64) -> f64) -> f64 {
+        let (mut total, mut weight) = (0.0, 0.0);
+        for (shift, frequency, amplitude) in self.terms() {
+            total += amplitude * shape(perlin(p * frequency + shift));
+            weight += amplitude;
+        }
+        mean(total, weight)
+    }
+
+    /// Shift, frequency and amplitude of every term. Later ones are shifted, so that the zeros that
+    /// all of them have at integer points do not fall together.
+    fn terms(&self) -> impl Iterator<Item = (DVec3, f64, f64)> {
+        const SHIFT: DVec3 = DVec3::new(19.19, 47.43, 73.71);
+        let (mut frequency, mut amplitude) = (1.0, 1.0);
+        (0..self.count).map(move |octave| {
+            let term = (SHIFT * f64::from(octave), frequency, amplitude);
             frequency *= self.lacunarity;
             amplitude *= self.gain;
-        }
-        // A gain so large that it overflows leaves no meaningful sum.
-        let mean = total / weight;
-        if mean.is_finite() { mean } else { 0.0 }
+            term
+        })
     }
 }
 
+/// A gain so large that it overflows leaves no meaningful sum.
+fn mean(total: f64, weight: f64) -> f64 {
+    let mean = total / weight;
+    if mean.is_finite() { mean } else { 0.0 }
+}
+
+#[inline(always)]
 fn fade(t: f64) -> f64 {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }
 
+#[inline(always)]
 fn lerp(t: f64, a: f64, b: f64) -> f64 {
     a + t * (b - a)
 }
 
 /// Dot product with one of the 12 directions to the edges of a cube (4 of them twice).
-fn gradient(hash: usize, x: f64, y: f64, z: f64) -> f64 {
+#[inline(always)]
+fn gradient(hash: u32, x: f64, y: f64, z: f64) -> f64 {
     let h = hash & 15;
     let u = if h < 8 { x } else { y };
-    let v = if h < 4 {
-        y
-    } else if h == 12 || h == 14 {
-        x
-    } else {
-        z
-    };
+    let v = if h == 12 || h == 14 { x } else { z };
+    let v = if h < 4 { y } else { v };
     (if h & 1 == 0 { u } else { -u }) + (if h & 2 == 0 { v } else { -v })
 }
 
@@ -133,7 +192,7 @@ mod tests {
     #[test]
     fn every_hash_is_used_once() {
         let mut seen = [false; 256];
-        PERMUTATION.iter().for_each(|p| seen[usize::from(*p)] = true);
+        PERMUTATION.iter().for_each(|p| seen[*p as usize] = true);
         assert_eq!(seen, [true; 256], "a permutation");
     }
 

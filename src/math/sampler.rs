@@ -8,6 +8,7 @@
 
 use crate::math::nets;
 use crate::math::sobol::{owen_scramble, second_dimension};
+use crate::math::vectorized::{BLOCK, Lane, vectorized};
 
 /// Where the numbers come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,8 +31,9 @@ pub struct SampleNumbers {
     sampler: Sampler,
     /// Of the block of pixels for Sobol points, else of the pixel.
     hash: u32,
-    /// In its block, in three orders: neighbours are first those in a row, a column, a diagonal.
-    places: [u8; 3],
+    /// In its block, in three orders, a byte each: neighbours are first those in a row, a column, a
+    /// diagonal.
+    places: u32,
     sample: u32,
 }
 
@@ -55,7 +57,9 @@ impl Sampler {
             Self::Random { seed } => (seed, 1),
         };
         let hash = mix(mix(seed ^ 0x9e37_79b9).wrapping_add((x / unit) | ((y / unit) << 16)));
-        let places = [nets::place_of(x, y), nets::place_of(y, x), nets::place_of(x, x ^ y)];
+        let [row, column, diagonal] =
+            [nets::place_of(x, y), nets::place_of(y, x), nets::place_of(x, x ^ y)].map(u32::from);
+        let places = row | column << 8 | diagonal << 16;
         SampleNumbers { sampler: self, hash, places, sample }
     }
 }
@@ -64,13 +68,9 @@ impl SampleNumbers {
     /// Two numbers in [0, 1) for one dimension, in an order of its own.
     #[inline]
     pub fn pair(&self, dimension: u32) -> [f32; 2] {
-        let key = self.key(dimension);
         match self.sampler {
-            Sampler::Sobol { .. } => {
-                let order = mix(key ^ u32::from(self.places[0]).wrapping_mul(0x9e37_79b9));
-                self.point(key, shuffled(self.sample, order))
-            }
-            Sampler::Random { .. } => self.random(key),
+            Sampler::Sobol { .. } => self.sobol(dimension),
+            Sampler::Random { .. } => self.random(dimension),
         }
     }
 
@@ -78,61 +78,152 @@ impl SampleNumbers {
     /// two dimensions of one kind should not be factors of one product.
     #[inline]
     pub fn joint_pair(&self, dimension: u32, net: Net) -> [f32; 2] {
-        let key = self.key(dimension);
         match self.sampler {
-            Sampler::Sobol { .. } => {
-                let index = match net {
-                    Net::First => self.sample,
-                    Net::Second => nets::reordered(0, self.sample),
-                    Net::Third => nets::reordered(1, self.sample),
-                };
-                self.point(key, index)
-            }
-            Sampler::Random { .. } => self.random(key),
+            Sampler::Sobol { .. } => self.joint(dimension, net),
+            Sampler::Random { .. } => self.random(dimension),
         }
     }
 
+    /// The same for the next samples of the same pixel.
     #[inline]
+    pub(crate) fn of_sample(self, sample: u32) -> Self {
+        Self { sample, ..self }
+    }
+
+    #[inline(always)]
     fn key(&self, dimension: u32) -> u32 {
         mix(self.hash ^ dimension.wrapping_mul(0x85eb_ca6b))
     }
 
+    #[inline(always)]
+    fn sobol(&self, dimension: u32) -> [f32; 2] {
+        let key = self.key(dimension);
+        let order = mix(key ^ (self.places & 0xff).wrapping_mul(0x9e37_79b9));
+        self.point(key, shuffled(self.sample, order))
+    }
+
+    #[inline(always)]
+    fn joint(&self, dimension: u32, net: Net) -> [f32; 2] {
+        let index = match net {
+            Net::First => self.sample,
+            Net::Second => nets::reordered(0, self.sample),
+            Net::Third => nets::reordered(1, self.sample),
+        };
+        self.point(self.key(dimension), index)
+    }
+
     /// A point of the sequence, shifted by the pixel's place and scrambled as in its whole block.
-    #[inline]
+    #[inline(always)]
     fn point(&self, key: u32, index: u32) -> [f32; 2] {
         // Every dimension sees the block's pixels in another order, so that their errors in two
         // dimensions have nothing to do with each other.
-        let place = self.places[(((key >> 8) * 3) >> 24) as usize];
-        let place = owen_scramble(u32::from(place), mix(key ^ 0x2545_f491)) as u8;
+        let order = (key >> 8).wrapping_mul(3) >> 24;
+        let place = self.places.wrapping_shr(8 * order) & 0xff;
+        let place = owen_scramble(place, mix(key ^ 0x2545_f491)) as u8;
         let [shift_x, shift_y] = nets::shift(place);
         let x = owen_scramble(index ^ shift_x, mix(key ^ 0x68e3_1da4));
         let y = owen_scramble(second_dimension(index) ^ shift_y, mix(key ^ 0xb529_7a4d));
         [unit(x.reverse_bits()), unit(y.reverse_bits())]
     }
 
-    #[inline]
-    fn random(&self, key: u32) -> [f32; 2] {
+    #[inline(always)]
+    fn random(&self, dimension: u32) -> [f32; 2] {
+        let key = self.key(dimension);
         let x = mix(key ^ mix(self.sample ^ 0x68e3_1da4));
         [unit(x), unit(mix(x ^ key.rotate_left(16)))]
     }
 }
 
+/// The numbers of a block of samples.
+#[derive(Clone, Debug)]
+pub(crate) struct NumbersBlock {
+    sampler: Sampler,
+    hash: Lane<u32>,
+    places: Lane<u32>,
+    sample: Lane<u32>,
+}
+
+impl NumbersBlock {
+    /// Of no samples yet.
+    pub(crate) fn new(sampler: Sampler) -> Self {
+        Self { sampler, hash: [0; BLOCK], places: [0; BLOCK], sample: [0; BLOCK] }
+    }
+
+    /// Sets one sample.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, i: usize, numbers: &SampleNumbers) {
+        self.hash[i] = numbers.hash;
+        self.places[i] = numbers.places;
+        self.sample[i] = numbers.sample;
+    }
+
+    /// [`SampleNumbers::joint_pair`] of each, or [`SampleNumbers::pair`] where no net is asked for.
+    #[inline]
+    pub(crate) fn pairs(&self, dimension: u32, net: Option<Net>, pairs: &mut [Lane<f32>; 2]) {
+        match (self.sampler, net) {
+            (Sampler::Random { .. }, _) => random_pairs(self, dimension, pairs),
+            (Sampler::Sobol { .. }, None) => sobol_pairs(self, dimension, pairs),
+            (Sampler::Sobol { .. }, Some(Net::First)) => first_pairs(self, dimension, pairs),
+            (Sampler::Sobol { .. }, Some(Net::Second)) => second_pairs(self, dimension, pairs),
+            (Sampler::Sobol { .. }, Some(Net::Third)) => third_pairs(self, dimension, pairs),
+        }
+    }
+
+    /// One of them.
+    #[inline(always)]
+    fn get(&self, i: usize) -> SampleNumbers {
+        let (hash, places, sample) = (self.hash[i], self.places[i], self.sample[i]);
+        SampleNumbers { sampler: self.sampler, hash, places, sample }
+    }
+}
+
+vectorized! {
+    fn random_pairs(block: &NumbersBlock, dimension: u32, pairs: &mut [Lane<f32>; 2]) {
+        let [u, v] = pairs;
+        for i in 0..BLOCK {
+            [u[i], v[i]] = block.get(i).random(dimension);
+        }
+    }
+    fn sobol_pairs(block: &NumbersBlock, dimension: u32, pairs: &mut [Lane<f32>; 2]) {
+        let [u, v] = pairs;
+        for i in 0..BLOCK {
+            [u[i], v[i]] = block.get(i).sobol(dimension);
+        }
+    }
+    fn first_pairs(block: &NumbersBlock, dimension: u32, pairs: &mut [Lane<f32>; 2]) {
+        let [u, v] = pairs;
+        for i in 0..BLOCK {
+            [u[i], v[i]] = block.get(i).joint(dimension, Net::First);
+        }
+    }
+    fn second_pairs(block: &NumbersBlock, dimension: u32, pairs: &mut [Lane<f32>; 2]) {
+        let [u, v] = pairs;
+        for i in 0..BLOCK {
+            [u[i], v[i]] = block.get(i).joint(dimension, Net::Second);
+        }
+    }
+    fn third_pairs(block: &NumbersBlock, dimension: u32, pairs: &mut [Lane<f32>; 2]) {
+        let [u, v] = pairs;
+        for i in 0..BLOCK {
+            [u[i], v[i]] = block.get(i).joint(dimension, Net::Third);
+        }
+    }
+}
+
 /// Another order of all indices, in which every block of the first 2^k stays what it is, and aligned
 /// blocks stay together.
-#[inline]
+#[inline(always)]
 fn shuffled(index: u32, key: u32) -> u32 {
-    if index < 2 {
-        return index;
-    }
     // The bits below the highest, as the leading digits of a number.
-    let n_bits = index.ilog2();
-    let digits = index.reverse_bits() >> (32 - n_bits);
+    let n_bits = 31 - (index | 1).leading_zeros();
+    let digits = index.reverse_bits().wrapping_shr(32 - n_bits);
     let digits = owen_scramble(digits, key.wrapping_add(n_bits));
-    1 << n_bits | digits.reverse_bits() >> (32 - n_bits)
+    let shuffled = 1_u32.wrapping_shl(n_bits) | digits.reverse_bits().wrapping_shr(32 - n_bits);
+    if index < 2 { index } else { shuffled }
 }
 
 /// A number in [0, 1) from the upper 24 bits.
-#[inline]
+#[inline(always)]
 fn unit(x: u32) -> f32 {
     (x >> 8) as f32 * (1.0 / 16_777_216.0)
 }
@@ -140,7 +231,7 @@ fn unit(x: u32) -> f32 {
 /// A bijection of 32 bits in which every input bit changes about half of the output bits.
 ///
 /// Source: the "lowbias32" constants of C. Wellons, "Prospecting for Hash Functions", 2018.
-#[inline]
+#[inline(always)]
 pub const fn mix(mut x: u32) -> u32 {
     x ^= x >> 16;
     x = x.wrapping_mul(0x7feb_352d);
@@ -152,6 +243,7 @@ pub const fn mix(mut x: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::vectorized::at_every_level;
 
     const SOBOL: Sampler = Sampler::Sobol { seed: 3 };
 
@@ -175,6 +267,38 @@ mod tests {
                     cells[(x * 16.0) as usize * 16 + (y * 16.0) as usize] += 1;
                 }
                 assert_eq!(cells, [1; 256], "way {way}, from {first}");
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_of_a_block_are_those_of_its_samples() {
+        for sampler in [SOBOL, Sampler::Random { seed: 9 }] {
+            for (dimension, net) in [
+                (0, Some(Net::First)),
+                (1, Some(Net::Second)),
+                (16, Some(Net::Third)),
+                (65_539, None),
+            ] {
+                let sample = |i: usize| {
+                    let i = i as u32;
+                    sampler.numbers(7 * i, i * i, if i < 8 { i } else { i * 40_503 })
+                };
+                let mut block = NumbersBlock::new(sampler);
+                (0..BLOCK).for_each(|i| block.set(i, &sample(i)));
+                for (level, [u, v]) in at_every_level(|| {
+                    let mut pairs = [[0.0; BLOCK]; 2];
+                    block.pairs(dimension, net, &mut pairs);
+                    pairs
+                }) {
+                    for i in 0..BLOCK {
+                        let one = match net {
+                            Some(net) => sample(i).joint_pair(dimension, net),
+                            None => sample(i).pair(dimension),
+                        };
+                        assert_eq!([u[i], v[i]], one, "{level:?}, {net:?}, sample {i}");
+                    }
+                }
             }
         }
     }

@@ -8,7 +8,7 @@
 ///
 /// Its generator matrix is Pascal's triangle modulo 2, a tensor power of [[1, 1], [0, 1]], so five
 /// masked shifts multiply by it.
-#[inline]
+#[inline(always)]
 pub fn second_dimension(index: u32) -> u32 {
     let mut x = index;
     x ^= (x >> 1) & 0x5555_5555;
@@ -23,7 +23,7 @@ pub fn second_dimension(index: u32) -> u32 {
 ///
 /// Source: S. Laine and T. Karras, "Stratified Sampling for Stochastic Transparency", EGSR 2011;
 /// B. Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020; constants by N. Vegdahl.
-#[inline]
+#[inline(always)]
 pub fn owen_scramble(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
     x = x.wrapping_add(seed);

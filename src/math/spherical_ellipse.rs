@@ -31,6 +31,13 @@ impl SphericalEllipse {
     /// The disk of radius `radius` around the origin of the plane z = 0, seen from `from`, whose z
     /// is above 0. `None` from its plane.
     pub fn new(radius: f64, from: DVec3) -> Option<Self> {
+        let cone = Self::seen(radius, from);
+        cone.is_visible().then_some(cone)
+    }
+
+    /// The same without a check.
+    #[inline(always)]
+    pub(crate) fn seen(radius: f64, from: DVec3) -> Self {
         let h = from.z;
         let offset = DVec2::new(from.x, from.y).length();
         // Towards the centre, along the plane.
@@ -47,20 +54,26 @@ impl SphericalEllipse {
         let beside = h * middle.x / middle.y - offset;
         let tan_short = (radius * radius - beside * beside).max(0.0).sqrt() * middle.y / h;
         let tan2 = DVec2::new(tan_long * tan_long, tan_short * tan_short);
-        let is_valid = h > 0.0 && tan2.min_element() > 0.0 && tan2.is_finite();
-        is_valid.then(|| Self {
+        Self {
             axis: along * middle.x - DVec3::Z * middle.y,
             long: along * middle.y + DVec3::Z * middle.x,
             short: DVec3::new(-along.y, along.x, 0.0),
             tan2,
             drop: DVec2::new(one_minus_cos(tan2.x), one_minus_cos(tan2.y)),
-        })
+        }
+    }
+
+    /// Whether it can be told from nothing.
+    #[inline(always)]
+    pub(crate) fn is_visible(&self) -> bool {
+        self.axis.z < 0.0 && self.tan2.min_element() > 0.0 && self.tan2.is_finite()
     }
 
     /// A unit direction for a point of the unit disk, with [`SphericalEllipse::pdf`].
+    #[inline(always)]
     pub fn sample(&self, p: DVec2) -> DVec3 {
         let stretched = p * DVec2::new(self.drop.x.sqrt(), self.drop.y.sqrt());
-        let heading = stretched.try_normalize().unwrap_or(DVec2::X);
+        let heading = heading_of(stretched);
         let drop = p.length_squared().min(1.0) * self.limit(heading);
         let sin = (drop * (2.0 - drop)).sqrt();
         self.axis * (1.0 - drop) + (self.long * heading.x + self.short * heading.y) * sin
@@ -68,9 +81,10 @@ impl SphericalEllipse {
 
     /// Density of [`SphericalEllipse::sample`] per solid angle at a unit direction of the cone, for
     /// points that are uniform in the unit disk.
+    #[inline(always)]
     pub fn pdf(&self, direction: DVec3) -> f64 {
         let across = DVec2::new(self.long.dot(direction), self.short.dot(direction));
-        let heading = across.try_normalize().unwrap_or(DVec2::X);
+        let heading = heading_of(across);
         let squares = heading * heading;
         // Squared radius of the ellipse, over the product of its half axes, is the density of φ.
         let radius2 = 1.0 / (squares / self.drop).element_sum();
@@ -78,12 +92,21 @@ impl SphericalEllipse {
     }
 
     /// 1 - cosine of the angle at which the cone ends in a heading about its axis.
+    #[inline(always)]
     fn limit(&self, heading: DVec2) -> f64 {
         one_minus_cos(1.0 / (heading * heading / self.tan2).element_sum())
     }
 }
 
+#[inline(always)]
+fn heading_of(v: DVec2) -> DVec2 {
+    let scale = v.length_recip();
+    let is_plain = scale.is_finite() && scale > 0.0;
+    if is_plain { v * scale } else { DVec2::X }
+}
+
 /// 1 - cosine of an angle below a quarter turn, from its squared tangent.
+#[inline(always)]
 fn one_minus_cos(tan2: f64) -> f64 {
     let cos2 = 1.0 / (1.0 + tan2);
     tan2 * cos2 / (1.0 + cos2.sqrt())

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use crate::math::portable;
+use crate::math::elementary;
 
 /// The directions from a point to a rectangle.
 #[derive(Clone, Copy, Debug)]
@@ -29,39 +29,46 @@ impl SphericalRectangle {
     /// The rectangle of half extents `half` around the origin of the plane z = 0, seen from `from`.
     /// `None` from its plane, and where it is too small to be told from nothing.
     pub fn new(half: [f64; 2], from: DVec3) -> Option<Self> {
+        let whole = Self::seen(half, from);
+        whole.is_visible().then_some(whole)
+    }
+
+    /// The same without a check.
+    #[inline(always)]
+    pub(crate) fn seen(half: [f64; 2], from: DVec3) -> Self {
         let z = from.z.abs();
         let (x, y) = ([-half[0] - from.x, half[0] - from.x], [-half[1] - from.y, half[1] - from.y]);
         let slope = |side: f64| side / (side * side + z * z).sqrt();
         let n = [-slope(y[0]), slope(x[1]), slope(y[1]), -slope(x[0])];
-        let corner = |i: usize, j: usize| portable::acos_f64((-n[i] * n[j]).clamp(-1.0, 1.0));
+        let corner = |i: usize, j: usize| elementary::acos((-n[i] * n[j]).clamp(-1.0, 1.0));
         let k = TAU - corner(2, 3) - corner(3, 0);
         let solid_angle = corner(0, 1) + corner(1, 2) - k;
+        Self { x, y, z, b: [n[0], n[2]], k, solid_angle }
+    }
+
+    /// Whether it can be told from nothing.
+    #[inline(always)]
+    pub(crate) fn is_visible(&self) -> bool {
         const SMALLEST: f64 = 1e-9;
-        (z > 0.0 && solid_angle > SMALLEST).then_some(Self {
-            x,
-            y,
-            z,
-            b: [n[0], n[2]],
-            k,
-            solid_angle,
-        })
+        self.z > 0.0 && self.solid_angle > SMALLEST
     }
 
     /// The point of the rectangle's plane for two numbers in [0, 1), relative to where it is seen
     /// from; z is the distance of the plane.
+    #[inline(always)]
     pub fn sample(&self, [u, v]: [f64; 2]) -> DVec3 {
         let angle = u * self.solid_angle + self.k;
-        let (sin, cos) = (portable::sin_f64(angle), portable::cos_f64(angle));
+        let (sin, cos) = elementary::sin_cos(angle);
         let f = (cos * self.b[0] - self.b[1]) / sin;
         let c = (1.0_f64.copysign(f) / (f * f + self.b[0] * self.b[0]).sqrt()).clamp(-1.0, 1.0);
         let x = c * self.z / (1.0 - c * c).max(1e-24).sqrt();
-        let x = if x.is_finite() { x.clamp(self.x[0], self.x[1]) } else { self.x[0] };
+        let x = if x.is_finite() { x.max(self.x[0]).min(self.x[1]) } else { self.x[0] };
         let across2 = x * x + self.z * self.z;
         let height = |y: f64| y / (across2 + y * y).sqrt();
         let (low, high) = (height(self.y[0]), height(self.y[1]));
         let h = low + v * (high - low);
         let y = h * (across2 / (1.0 - h * h).max(1e-24)).sqrt();
-        DVec3::new(x, y.clamp(self.y[0], self.y[1]), self.z)
+        DVec3::new(x, y.max(self.y[0]).min(self.y[1]), self.z)
     }
 }
 

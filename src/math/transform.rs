@@ -42,9 +42,12 @@ impl Transform {
     /// A point of the object in the world.
     #[inline]
     pub fn world_from_object_point(&self, p: DVec3) -> DVec3 {
-        if self.is_identity {
-            return p;
-        }
+        if self.is_identity { p } else { self.moved_point(p) }
+    }
+
+    /// [`Transform::world_from_object_point`], also where nothing changes but signs of zeros.
+    #[inline(always)]
+    pub(crate) fn moved_point(&self, p: DVec3) -> DVec3 {
         self.linear * p + self.translation
     }
 
@@ -60,18 +63,24 @@ impl Transform {
     /// A normal of the object in the world: by the inverse transpose; not normalised.
     #[inline]
     pub fn world_from_object_normal(&self, n: DVec3) -> DVec3 {
-        if self.is_identity {
-            return n;
-        }
+        if self.is_identity { n } else { self.moved_normal(n) }
+    }
+
+    /// [`Transform::world_from_object_normal`], also where nothing changes but signs of zeros.
+    #[inline(always)]
+    pub(crate) fn moved_normal(&self, n: DVec3) -> DVec3 {
         self.inverse.transpose() * n
     }
 
     /// A point of the world as the object sees it.
     #[inline]
     pub fn object_from_world_point(&self, p: DVec3) -> DVec3 {
-        if self.is_identity {
-            return p;
-        }
+        if self.is_identity { p } else { self.unmoved_point(p) }
+    }
+
+    /// [`Transform::object_from_world_point`], also where nothing changes but signs of zeros.
+    #[inline(always)]
+    pub(crate) fn unmoved_point(&self, p: DVec3) -> DVec3 {
         self.inverse * (p - self.translation)
     }
 
@@ -79,14 +88,18 @@ impl Transform {
     /// ray keep their parameter.
     #[inline]
     pub fn object_from_world_vector(&self, v: DVec3) -> DVec3 {
-        if self.is_identity {
-            return v;
-        }
+        if self.is_identity { v } else { self.unmoved_vector(v) }
+    }
+
+    /// [`Transform::object_from_world_vector`], also where nothing changes but signs of zeros.
+    #[inline(always)]
+    pub(crate) fn unmoved_vector(&self, v: DVec3) -> DVec3 {
         self.inverse * v
     }
 
     /// Upper bound of the world's displacement, per axis, for a displacement of at most `extent`
     /// along every axis of the object.
+    #[inline(always)]
     pub fn spread(&self, extent: f64) -> DVec3 {
         let m = self.linear;
         (m.x_axis.abs() + m.y_axis.abs() + m.z_axis.abs()) * extent

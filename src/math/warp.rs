@@ -2,27 +2,24 @@
 //!
 //! Inputs are pairs in [0, 1). All maps preserve the stratification of their input.
 
-use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+use std::f32::consts::{FRAC_PI_4, PI};
 
 use glam::{Vec2, Vec3};
 
-use crate::math::portable;
+use crate::math::{elementary, portable};
 
 /// Uniform on the unit disk; density 1/π per area.
 ///
 /// Source: P. Shirley and K. Chiu, "A Low Distortion Map Between Disk and Square", JGT 2(3), 1997.
+#[inline(always)]
 pub fn square_to_disk([u, v]: [f32; 2]) -> Vec2 {
     let (a, b) = (2.0 * u - 1.0, 2.0 * v - 1.0);
-    if a == 0.0 && b == 0.0 {
-        return Vec2::ZERO;
-    }
-    let (radius, angle) = if a.abs() > b.abs() {
-        (a, FRAC_PI_4 * (b / a))
-    } else {
-        (b, FRAC_PI_2 - FRAC_PI_4 * (a / b))
-    };
-    let (sin, cos) = portable::sin_cos(angle);
-    radius * Vec2::new(cos, sin)
+    let is_wide = a.abs() > b.abs();
+    let (radius, across) = if is_wide { (a, b) } else { (b, a) };
+    let ratio = if radius == 0.0 { 0.0 } else { across / radius };
+    let (sin, cos) = elementary::sin_cos_octant(FRAC_PI_4 * ratio);
+    let (along, across) = (radius * cos, radius * sin);
+    if is_wide { Vec2::new(along, across) } else { Vec2::new(across, along) }
 }
 
 /// Cosine-weighted on the upper unit hemisphere; density [`cosine_hemisphere_pdf`].
@@ -38,6 +35,7 @@ pub fn cosine_hemisphere_pdf(cos: f32) -> f32 {
 
 /// Uniform on the cap of the unit sphere around +z where 1 - z <= `one_minus_cos` (0..=2);
 /// density 1 / (2π `one_minus_cos`) per solid angle. Taking 1 - cos keeps small caps exact.
+#[inline(always)]
 pub fn square_to_cap(u: [f32; 2], one_minus_cos: f32) -> Vec3 {
     let p = square_to_disk(u);
     let r2 = p.length_squared().min(1.0);
@@ -53,6 +51,7 @@ pub fn square_to_sphere(u: [f32; 2]) -> Vec3 {
 }
 
 /// Uniform in a regular polygon of `n` corners inscribed in the unit circle, one corner at (0, 1).
+#[inline]
 pub fn square_to_polygon([u, v]: [f32; 2], n: u32) -> Vec2 {
     let scaled = u * n as f32;
     let side = (scaled as u32).min(n - 1);

@@ -16,6 +16,8 @@ pub struct Film {
     width: u32,
     height: u32,
     n_samples: u32,
+    /// Row by row. Room for all of them, but none before the first pass: to clear them takes longer
+    /// than a preview.
     pixels: Vec<PixelSums>,
     /// Where samples do not go evenly: who gets how many until the next power of two.
     allotment: Option<Allotment>,
@@ -59,7 +61,6 @@ impl Film {
         let too_large = FilmTooLarge { width, height, bytes };
         let mut pixels = Vec::new();
         pixels.try_reserve_exact(n_pixels).map_err(|_| too_large)?;
-        pixels.resize(n_pixels, PixelSums::default());
         Ok(Self { width, height, n_samples: 0, pixels, allotment: None, model: None, noise: None })
     }
 
@@ -80,17 +81,17 @@ impl Film {
 
     /// Samples of one pixel.
     pub fn samples_at(&self, x: u32, y: u32) -> u32 {
-        self.pixels[(y * self.width + x) as usize].n_samples
+        self.pixel((y * self.width + x) as usize).n_samples
     }
 
     /// The mean of a pixel's samples; black without samples.
     pub fn mean(&self, x: u32, y: u32) -> [f32; 3] {
-        self.pixels[(y * self.width + x) as usize].mean()
+        self.pixel((y * self.width + x) as usize).mean()
     }
 
     /// The means of all pixels.
     pub fn picture(&self) -> Picture {
-        let pixels = self.pixels.iter().map(PixelSums::mean).collect();
+        let pixels = (0..self.n_pixels()).map(|place| self.pixel(place).mean()).collect();
         Picture { width: self.width, height: self.height, pixels }
     }
 
@@ -109,13 +110,14 @@ impl Film {
         let n_samples = |pixel: &PixelSums| f64::from(pixel.n_samples.max(1));
         let light = self.pixels.iter().map(|pixel| pixel.luminance() / n_samples(pixel));
         let mean = light.sum::<f64>() / self.pixels.len() as f64;
-        let of_pixel = |pixel: &PixelSums| {
+        let of_pixel = |place: usize| {
+            let pixel = &self.pixel(place);
             let known = self.model.filter(|_| 2 <= pixel.n_samples);
             let error = known.map_or(f64::NAN, |model| model.variance(pixel).sqrt());
             let error_percent = (100.0 * error / mean) as f32;
             Sampling { n_samples: pixel.n_samples, error_percent }
         };
-        let pixels = self.pixels.par_iter().map(of_pixel).collect();
+        let pixels = (0..self.n_pixels()).into_par_iter().map(of_pixel).collect();
         PixelMap { width: self.width, height: self.height, pixels }
     }
 
@@ -123,7 +125,7 @@ impl Film {
     /// when the mean is `n_samples`.
     pub(super) fn tile(&self, tile: &Tile, n_samples: u32) -> (Vec<PixelSums>, Vec<u32>) {
         let places = tile.rows().flat_map(|y| self.row(tile, y));
-        let pixels = places.clone().map(|place| self.pixels[place]).collect();
+        let pixels = places.clone().map(|place| self.pixel(place)).collect();
         let goal = |place| match &self.allotment {
             Some(allotment) => allotment.n_samples(place, n_samples),
             None => n_samples,
@@ -138,6 +140,7 @@ impl Film {
         settings: &RenderSettings,
         tiles: &[(Tile, Vec<PixelSums>)],
     ) {
+        self.pixels.resize(self.n_pixels(), PixelSums::default());
         for (tile, pixels) in tiles {
             for (y, row) in tile.rows().zip(pixels.chunks_exact(tile.width as usize)) {
                 let to = self.row(tile, y);
@@ -152,6 +155,15 @@ impl Film {
             let width = self.width as usize;
             self.allotment = Some(Allotment::new(width, n_samples, &self.pixels, &model));
         }
+    }
+
+    fn n_pixels(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+
+    /// The sums of a pixel.
+    fn pixel(&self, place: usize) -> PixelSums {
+        self.pixels.get(place).copied().unwrap_or_default()
     }
 
     fn row(&self, tile: &Tile, y: u32) -> std::ops::Range<usize> {

@@ -7,6 +7,7 @@
 //! power heuristic.
 
 mod direct_light;
+mod groups;
 mod shadows;
 
 use std::ops::Range;
@@ -15,17 +16,21 @@ use glam::{Vec2, Vec3};
 
 use crate::brdf::fresnel;
 use crate::color::{Rgb, luminance};
-use crate::geometry::Hit;
-use crate::math::sampler::{Net, SampleNumbers};
-use crate::math::{Ray, RayBatch};
+use crate::geometry::{Hit, HitBlock};
+use crate::math::sampler::{Net, NumbersBlock, SampleNumbers, Sampler};
+use crate::math::vectorized::{BLOCK, Lane, Lane3, NO_LANES, set_vec3, vec3};
+use crate::math::{PrimitiveId, Ray, RayBatch, RayBlock};
 use crate::render::PassStatistics;
 use crate::render::pixel::PixelSums;
 use crate::render::plan::Tile;
-use crate::render::shading::Shading;
+use crate::render::shading::{Coat, Shading, ShadingBlock};
 use crate::render::world::World;
+use crate::scene::Camera;
 use crate::scene::description::IntegratorKind;
+use crate::scene::light::LightBlock;
 
 use direct_light::LightChoice;
+use groups::Groups;
 use shadows::Shadows;
 
 /// Dimensions of a sample's numbers. Each scattering event has a block of its own.
@@ -95,9 +100,26 @@ pub(super) struct TileRenderer<'a> {
     hits: Vec<Option<Hit>>,
     next_rays: RayBatch,
     next_paths: Vec<Path>,
+    groups: Groups,
+    /// Paths that have met nothing.
+    lost: Vec<u32>,
     shadows: Shadows,
     lights: LightChoice,
+    samples: LightBlock,
     emitter_weights: Vec<f32>,
+}
+
+/// Paths of a wave that have met the same material of one object.
+struct Block {
+    /// How many; the last one is repeated to the end.
+    n: usize,
+    paths: Lane<Path>,
+    slots: Lane<u32>,
+    numbers: NumbersBlock,
+    throughput: Lane3,
+    rays: HitBlock,
+    hits: Lane<Hit>,
+    shading: ShadingBlock,
 }
 
 impl<'a> TileRenderer<'a> {
@@ -111,8 +133,11 @@ impl<'a> TileRenderer<'a> {
             hits: Vec::new(),
             next_rays: RayBatch::default(),
             next_paths: Vec::new(),
+            groups: Groups::new(world),
+            lost: Vec::new(),
             shadows: Shadows::default(),
             lights: LightChoice::default(),
+            samples: LightBlock::EMPTY,
             emitter_weights: Vec::new(),
         }
     }
@@ -147,15 +172,15 @@ impl<'a> TileRenderer<'a> {
 
     /// Follows the paths of a block, wave by wave, into `radiance`.
     fn trace(&mut self, statistics: &mut PassStatistics) {
+        let mut block = Block::new(self.world.job.settings.sampler);
         while !self.rays.is_empty() {
             self.world.geometry.intersect(&self.rays, &mut self.hits);
             statistics.n_rays += self.rays.len() as u64;
             self.next_rays.clear();
             self.next_paths.clear();
             self.shadows.clear();
-            for index in 0..self.paths.len() {
-                self.advance(self.paths[index], self.rays.ray(index), self.hits[index]);
-            }
+            self.meet();
+            self.shade(&mut block);
             statistics.n_rays += self.shadows.rays.len() as u64;
             self.shadows.resolve(self.world, &mut self.radiance);
             std::mem::swap(&mut self.rays, &mut self.next_rays);
@@ -170,18 +195,14 @@ impl<'a> TileRenderer<'a> {
         self.rays.clear();
         self.paths.clear();
         self.runs.clear();
+        let mut first_rays = FirstRays::new(job.settings.sampler);
         for (pixel, (x, y)) in tile.pixels().enumerate() {
             let first_slot = self.paths.len();
             let first = pixels[pixel].n_samples;
+            let numbers = job.settings.sampler.numbers(x, y, first);
             for sample in first..goals[pixel].min(first + n_at_once) {
-                let numbers = job.settings.sampler.numbers(x, y, sample);
-                let [dx, dy] = numbers.joint_pair(dimension::PIXEL, Net::First);
-                let at = Vec2::new(x as f32 + dx, y as f32 + dy);
-                self.rays.push(job.scene.camera.ray(
-                    at,
-                    size,
-                    numbers.joint_pair(dimension::LENS, Net::Second),
-                ));
+                let numbers = numbers.of_sample(sample);
+                first_rays.push((x, y), &numbers, &job.scene.camera, size, &mut self.rays);
                 self.paths.push(Path {
                     slot: self.paths.len() as u32,
                     throughput: Rgb::ONE,
@@ -192,47 +213,138 @@ impl<'a> TileRenderer<'a> {
             }
             self.runs.push(Run { pixel, slots: first_slot..self.paths.len() });
         }
+        first_rays.flush(&job.scene.camera, size, &mut self.rays);
         self.radiance.clear();
         self.radiance.resize(self.paths.len(), Rgb::ZERO);
     }
 
-    /// What a path's ray meets: adds its light, leaves shadow rays, and goes on.
-    fn advance(&mut self, path: Path, ray: Ray, hit: Option<Hit>) {
+    /// What the rays of a wave meet: adds visible lights and the background, and groups the rest.
+    fn meet(&mut self) {
         let world = self.world;
-        let t_surface = hit.map_or(f32::INFINITY, |hit| hit.t);
-        if let Some(radiance) = self.visible_light(&ray, t_surface) {
-            if path.scattered.is_none() {
-                self.add(path, radiance);
+        self.groups.clear();
+        for start in (0..self.paths.len()).step_by(BLOCK) {
+            let n = BLOCK.min(self.paths.len() - start);
+            let lights = self.lights_before(start, n);
+            for (i, light) in lights.into_iter().enumerate().take(n) {
+                let index = start + i;
+                let path = &self.paths[index];
+                if let Some(light) = light {
+                    if path.scattered.is_none() {
+                        self.add(*path, world.job.scene.lights[light as usize].radiance());
+                    }
+                    continue;
+                }
+                if let Some(hit) = self.hits[index] {
+                    self.groups.push(world, index as u32, hit);
+                    continue;
+                }
+                self.lost.push(index as u32);
             }
-            return;
         }
-        let direction = ray.direction.normalize();
-        let Some(hit) = hit else {
-            let share = path
-                .scattered
-                .map_or(1.0, |last| power(last.pdf, world.emission.sky_pdf(last.total, direction)));
-            self.add(path, world.job.scene.background_radiance(direction) * share);
-            return;
-        };
-        let shading = Shading::new(world, &ray, hit);
-        let emission = shading.material.emission;
+        self.groups.sort();
+        self.add_background();
+    }
+
+    /// Adds the background to the paths that have left the scene.
+    fn add_background(&mut self) {
+        let world = self.world;
+        let (mut directions, mut radiances) = (NO_LANES, NO_LANES);
+        for start in (0..self.lost.len()).step_by(BLOCK) {
+            let n = BLOCK.min(self.lost.len() - start);
+            for i in 0..n {
+                let index = self.lost[start + i] as usize;
+                set_vec3(&mut directions, i, self.rays.ray(index).direction.normalize());
+            }
+            world.job.scene.background_radiances(&directions, &mut radiances);
+            for i in 0..n {
+                let path = self.paths[self.lost[start + i] as usize];
+                let direction = vec3(&directions, i);
+                let share = path.scattered.map_or(1.0, |last| {
+                    power(last.pdf, world.emission.sky_pdf(last.total, direction))
+                });
+                self.add(path, vec3(&radiances, i) * share);
+            }
+        }
+        self.lost.clear();
+    }
+
+    /// Number of the nearest visible light before what each of `n` rays meets; suns are behind
+    /// everything.
+    fn lights_before(&self, start: usize, n: usize) -> Lane<Option<u32>> {
+        let mut nearest = [None; BLOCK];
+        let lights = self.world.job.scene.lights.iter().enumerate();
+        let mut rays = None;
+        let (mut best, mut t) = ([f32::INFINITY; BLOCK], [f32::NAN; BLOCK]);
+        for (index, light) in lights.filter(|(_, light)| light.visible && light.has_extent()) {
+            let rays = rays.get_or_insert_with(|| self.rays.block(start, n));
+            light.intersect_block(rays, &mut t);
+            for i in 0..n {
+                let t_surface = self.hits[start + i].map_or(f32::INFINITY, |hit| hit.t);
+                let is_first = nearest[i].is_none() || t[i] < best[i];
+                let is_before = t[i] < t_surface || t_surface == f32::INFINITY;
+                if t[i] > 0.0 && is_first && is_before {
+                    (nearest[i], best[i]) = (Some(index as u32), t[i]);
+                }
+            }
+        }
+        nearest
+    }
+
+    /// Adds the light of all surfaces met, block by block, leaves shadow rays, and goes on.
+    fn shade(&mut self, block: &mut Block) {
+        for group in 0..self.groups.len() {
+            let ((object, slot), mut places) = self.groups.take(group);
+            let coat = Coat::new(self.world, object, slot);
+            while !places.is_empty() {
+                let n = places.len().min(BLOCK);
+                block.n = n;
+                for i in 0..BLOCK {
+                    let index = self.groups.path(places.start + i.min(n - 1)) as usize;
+                    if let Some(hit) = self.hits[index] {
+                        block.set(i, &self.rays, index, self.paths[index], hit);
+                    }
+                }
+                places.start += n;
+                self.advance(&coat, block);
+            }
+        }
+    }
+
+    /// The light of the surfaces of a block, shadow rays to more of it, and what goes on.
+    fn advance(&mut self, coat: &Coat<'_>, block: &mut Block) {
+        let world = self.world;
+        block.shading.fill(coat, &block.rays);
+        let (n, material) = (block.n, coat.material);
+        let emission = material.emission;
         if emission != Rgb::ZERO {
-            let share = path.scattered.map_or(1.0, |last| {
-                let from = (last.from, last.normal, last.object, last.total);
-                let met = (hit, &shading.surface, emission);
-                power(last.pdf, world.emission.pdf(from, direction, met))
-            });
-            self.add(path, emission * share);
+            for i in 0..n {
+                let path = block.paths[i];
+                let share = path.scattered.map_or(1.0, |last| {
+                    let direction = vec3(&block.rays.direction, i).normalize();
+                    let from = (last.from, last.normal, last.object, last.total);
+                    let surface = block.shading.surface.surface(i);
+                    let met = (block.hits[i], &surface, emission);
+                    power(last.pdf, world.emission.pdf(from, direction, met))
+                });
+                self.add(path, emission * share);
+            }
         }
         let settings = &world.job.settings;
-        if settings.integrator == IntegratorKind::Direct {
-            self.add(path, shading.glossy.diffuse * world.job.scene.ambient);
+        let ambient = world.job.scene.ambient;
+        if settings.integrator == IntegratorKind::Direct && ambient != Rgb::ZERO {
+            for i in 0..n {
+                self.add(block.paths[i], vec3(&block.shading.diffuse, i) * ambient);
+            }
         }
-        if !shading.glossy.is_black() {
-            self.sample_lights(path, &shading);
+        if !material.is_never_lit() {
+            self.light_block(coat, block);
         }
-        if path.depth < settings.max_depth {
-            self.go_on(path, &shading);
+        let goes_on = block.paths[0].depth < settings.max_depth
+            && (settings.integrator == IntegratorKind::Path || material.is_specular());
+        if goes_on {
+            for i in 0..n {
+                self.go_on(block.paths[i], &block.shading.shading(coat, i));
+            }
         }
     }
 
@@ -240,11 +352,17 @@ impl<'a> TileRenderer<'a> {
     /// lens. Light, probe and scattering are terms of a sum, so they can be nets of one kind.
     fn first_net(&self, path: Path, purpose: u32) -> [f32; 2] {
         let dimension = dimension::of(path.depth, purpose);
-        if path.depth > 0 {
-            return path.numbers.pair(dimension);
+        match self.joint_net(path.depth) {
+            Some(net) => path.numbers.joint_pair(dimension, net),
+            None => path.numbers.pair(dimension),
         }
+    }
+
+    /// Whose net the numbers of [`TileRenderer::first_net`] share.
+    fn joint_net(&self, depth: u32) -> Option<Net> {
         let is_pinhole = self.world.job.scene.camera.aperture_radius == 0.0;
-        path.numbers.joint_pair(dimension, if is_pinhole { Net::Second } else { Net::Third })
+        let net = if is_pinhole { Net::Second } else { Net::Third };
+        (depth == 0).then_some(net)
     }
 
     fn add(&mut self, path: Path, radiance: Rgb) {
@@ -346,15 +464,93 @@ impl<'a> TileRenderer<'a> {
     }
 }
 
+impl Block {
+    fn new(sampler: Sampler) -> Self {
+        let nowhere = Path {
+            slot: 0,
+            throughput: Rgb::ZERO,
+            numbers: sampler.numbers(0, 0, 0),
+            depth: 0,
+            scattered: None,
+        };
+        Self {
+            n: 0,
+            paths: [nowhere; BLOCK],
+            slots: [0; BLOCK],
+            numbers: NumbersBlock::new(sampler),
+            throughput: NO_LANES,
+            rays: HitBlock::EMPTY,
+            hits: [Hit { t: 0.0, id: PrimitiveId::NONE }; BLOCK],
+            shading: ShadingBlock::EMPTY,
+        }
+    }
+
+    fn set(&mut self, i: usize, rays: &RayBatch, place: usize, path: Path, hit: Hit) {
+        self.rays.set(i, rays, place, hit);
+        self.hits[i] = hit;
+        self.slots[i] = path.slot;
+        self.numbers.set(i, &path.numbers);
+        set_vec3(&mut self.throughput, i, path.throughput);
+        self.paths[i] = path;
+    }
+}
+
+/// Camera rays on their way into a batch.
+struct FirstRays {
+    n: usize,
+    numbers: NumbersBlock,
+    /// The pixels.
+    at: [Lane<f32>; 2],
+    rays: RayBlock,
+}
+
+impl FirstRays {
+    fn new(sampler: Sampler) -> Self {
+        let (numbers, rays) = (NumbersBlock::new(sampler), RayBlock::IDLE);
+        Self { n: 0, numbers, at: [[0.0; BLOCK]; 2], rays }
+    }
+
+    fn push(
+        &mut self,
+        (x, y): (u32, u32),
+        numbers: &SampleNumbers,
+        camera: &Camera,
+        size: Vec2,
+        rays: &mut RayBatch,
+    ) {
+        self.numbers.set(self.n, numbers);
+        (self.at[0][self.n], self.at[1][self.n]) = (x as f32, y as f32);
+        self.n += 1;
+        if self.n == BLOCK {
+            self.flush(camera, size, rays);
+        }
+    }
+
+    fn flush(&mut self, camera: &Camera, size: Vec2, rays: &mut RayBatch) {
+        let (mut at, mut lens) = ([[0.0; BLOCK]; 2], [[0.0; BLOCK]; 2]);
+        self.numbers.pairs(dimension::PIXEL, Some(Net::First), &mut at);
+        for (at, pixel) in at.iter_mut().flatten().zip(self.at.as_flattened()) {
+            *at += pixel;
+        }
+        if camera.aperture_radius > 0.0 {
+            self.numbers.pairs(dimension::LENS, Some(Net::Second), &mut lens);
+        }
+        camera.rays(&at, size, &lens, &mut self.rays);
+        rays.append(&self.rays, self.n);
+        self.n = 0;
+    }
+}
+
 /// The share of a way of density `this` in what one of density `other` finds as well: the power
 /// heuristic with exponent 2.
 ///
 /// Source: E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, section 9.2.
+#[inline(always)]
 fn power(this: f32, other: f32) -> f32 {
-    if this == f32::INFINITY {
-        return 1.0;
-    }
-    let (this, other) = (f64::from(this).powi(2), f64::from(other).powi(2));
+    let is_only = this == f32::INFINITY;
+    let (this, other) = (f64::from(this), f64::from(other));
+    let (this, other) = (this * this, other * other);
     let weight = this / (this + other);
-    if weight.is_finite() { weight as f32 } else { 0.0 }
+    let weight = if weight.is_finite() { weight as f32 } else { 0.0 };
+    if is_only { 1.0 } else { weight }
 }

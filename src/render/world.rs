@@ -61,17 +61,25 @@ impl World {
     /// The material at a hit.
     pub(super) fn material_at(&self, hit: Hit) -> &Material {
         let object = &self.job.scene.objects[hit.id.object as usize];
-        let slot = match object.instance.shape() {
-            Shape::Mesh(mesh) => {
-                mesh.mesh.slots.get(hit.id.primitive as usize).copied().unwrap_or(0)
+        &self.job.scene.materials[object.material(self.slot_at(hit)) as usize]
+    }
+
+    /// The material slot at a hit; the last one of the object stands for all further ones.
+    pub(super) fn slot_at(&self, hit: Hit) -> u32 {
+        let object = &self.job.scene.objects[hit.id.object as usize];
+        let last = object.materials.len() as u32 - 1;
+        match object.instance.shape() {
+            Shape::Mesh(mesh) if last > 0 => {
+                let slot = mesh.mesh.slots.get(hit.id.primitive as usize);
+                slot.map_or(0, |slot| last.min(*slot))
             }
-            Shape::Sphere { .. }
+            Shape::Mesh(_)
+            | Shape::Sphere { .. }
             | Shape::Plane { .. }
             | Shape::Box { .. }
             | Shape::Cone { .. }
             | Shape::Cylinder { .. } => 0,
-        };
-        &self.job.scene.materials[object.material(slot) as usize]
+        }
     }
 
     /// What the pinhole ray at (x, y) in pixels meets; `None` for suns and the background.

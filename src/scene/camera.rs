@@ -2,7 +2,8 @@
 
 use glam::{DVec3, Vec2, Vec3};
 
-use crate::math::{Ray, portable, warp};
+use crate::math::vectorized::{BLOCK, Lane, set_vec3, vectorized};
+use crate::math::{Ray, RayBlock, portable, warp};
 
 /// A lens in the world and the plane it is focused on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +46,7 @@ impl Camera {
 
     /// Direction of the pinhole ray at (x, y) in pixels, y down, of a picture of that size; its
     /// component along `forward` is 1.
+    #[inline(always)]
     pub fn pinhole_direction(&self, at: Vec2, size: Vec2) -> Vec3 {
         let x = (2.0 * at.x / size.x - 1.0) * (size.x / size.y);
         let y = 1.0 - 2.0 * at.y / size.y;
@@ -62,7 +64,58 @@ impl Camera {
             0 => warp::square_to_disk(lens),
             blades => warp::square_to_polygon(lens, blades),
         };
+        self.through_lens(direction, p)
+    }
+
+    /// [`Camera::ray`] for a block of samples.
+    pub(crate) fn rays(
+        &self,
+        at: &[Lane<f32>; 2],
+        size: Vec2,
+        lens: &[Lane<f32>; 2],
+        rays: &mut RayBlock,
+    ) {
+        match (self.aperture_radius == 0.0, self.aperture_blades) {
+            (true, _) => pinhole_rays(self, at, size, rays),
+            (false, 0) => round_lens_rays(self, at, size, lens, rays),
+            (false, _) => {
+                for i in 0..BLOCK {
+                    let ray =
+                        self.ray(Vec2::new(at[0][i], at[1][i]), size, [lens[0][i], lens[1][i]]);
+                    set_vec3(&mut rays.origin, i, ray.origin);
+                    set_vec3(&mut rays.direction, i, ray.direction);
+                }
+            }
+        }
+    }
+
+    /// From a point of the unit lens.
+    #[inline(always)]
+    fn through_lens(&self, pinhole: Vec3, p: Vec2) -> Ray {
         let offset = self.aperture_radius * (p.x * self.right + p.y * self.up);
-        Ray::new(self.eye + offset, direction * self.focal_distance - offset)
+        Ray::new(self.eye + offset, pinhole * self.focal_distance - offset)
+    }
+}
+vectorized! {
+    fn pinhole_rays(camera: &Camera, at: &[Lane<f32>; 2], size: Vec2, rays: &mut RayBlock) {
+        for i in 0..BLOCK {
+            let direction = camera.pinhole_direction(Vec2::new(at[0][i], at[1][i]), size);
+            set_vec3(&mut rays.origin, i, camera.eye);
+            set_vec3(&mut rays.direction, i, direction);
+        }
+    }
+    fn round_lens_rays(
+        camera: &Camera,
+        at: &[Lane<f32>; 2],
+        size: Vec2,
+        lens: &[Lane<f32>; 2],
+        rays: &mut RayBlock,
+    ) {
+        for i in 0..BLOCK {
+            let direction = camera.pinhole_direction(Vec2::new(at[0][i], at[1][i]), size);
+            let ray = camera.through_lens(direction, warp::square_to_disk([lens[0][i], lens[1][i]]));
+            set_vec3(&mut rays.origin, i, ray.origin);
+            set_vec3(&mut rays.direction, i, ray.direction);
+        }
     }
 }

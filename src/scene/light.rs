@@ -3,19 +3,22 @@
 //! Rectangles, spheres and suns are sampled uniformly by the solid angle that they fill, disks
 //! nearly so; small and far rectangles and disks by their area, which is the same there.
 
+mod block;
 mod estimate;
 mod sphere;
+mod way;
 
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::TAU;
 
 use glam::{DVec3, Vec3};
 
 use crate::color::Rgb;
-use crate::math::spherical_ellipse::SphericalEllipse;
-use crate::math::spherical_rectangle::SphericalRectangle;
 use crate::math::{Frame, Ray, portable, warp};
 
+pub(crate) use block::LightBlock;
 pub use estimate::LightEstimate;
+
+use way::{Way, disk_pdf, rectangle_pdf, sphere_pdf};
 
 /// A source of light. Never blocks light; seen by the camera only if `visible`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,50 +120,14 @@ impl Light {
     /// Samples the light from `from` with two numbers in [0, 1). `None` where nothing arrives.
     pub fn sample(&self, from: Vec3, u: [f32; 2]) -> Option<LightSample> {
         match self.emitter {
-            Emitter::Rectangle { center, frame, half: [a, b], radiance } => {
-                let seen = seen_from(from, center, &frame);
-                let Some(whole) = spherical_rectangle([a, b], seen) else {
-                    let (x, y) = (a * (2.0 * u[0] - 1.0), b * (2.0 * u[1] - 1.0));
-                    let point = center + frame.x * x + frame.y * y;
-                    return from_area(from, point, frame.z, 4.0 * a * b, radiance);
-                };
-                let p = whole.sample(u.map(f64::from));
-                let reach = in_world(&frame, DVec3::new(p.x, p.y, -p.z)).as_vec3();
-                let pdf = (1.0 / whole.solid_angle) as f32;
-                Some(LightSample::of_place(reach, Some(frame.z), radiance, pdf))
+            Emitter::Rectangle { center, frame, half, radiance } => {
+                Way::to_rectangle(from, u, center, &frame, half).sample(radiance)
             }
             Emitter::Disk { center, frame, radius, radiance } => {
-                let p = warp::square_to_disk(u);
-                let seen = seen_from(from, center, &frame);
-                let Some(cone) = spherical_ellipse(radius, seen) else {
-                    let point = center + (frame.x * p.x + frame.y * p.y) * radius;
-                    return from_area(from, point, frame.z, PI * radius * radius, radiance);
-                };
-                let direction = cone.sample(p.as_dvec2());
-                // A direction at the very rim may be rounded into the plane.
-                if direction.z >= 0.0 {
-                    return None;
-                }
-                let reach = in_world(&frame, direction * (seen.z / -direction.z)).as_vec3();
-                let pdf = cone.pdf(direction) as f32;
-                Some(LightSample::of_place(reach, Some(frame.z), radiance, pdf))
+                Way::to_disk(from, u, center, &frame, radius).sample(radiance)
             }
             Emitter::Sphere { center, radius, radiance } => {
-                let one_minus_cos = sphere::cap(from, center, radius)?;
-                let axis = (center - from).normalize();
-                let local = warp::square_to_cap(u, one_minus_cos);
-                let direction = Frame::from_normal(axis).world_from_local(local);
-                let (t, normal) = sphere::nearest(from, direction, center, radius)
-                    .unwrap_or_else(|| sphere::tangent(from, direction, center));
-                let pdf = 1.0 / (TAU * one_minus_cos);
-                Some(LightSample {
-                    direction,
-                    reach: direction * t,
-                    t_max: 1.0,
-                    normal: Some(normal),
-                    weight: radiance / pdf,
-                    pdf: Some(pdf),
-                })
+                Way::to_sphere(from, u, center, radius).sample(radiance)
             }
             Emitter::Point { position, intensity } => from_point(from, position, |_| intensity),
             Emitter::Spot { position, normal, intensity } => {
@@ -188,13 +155,10 @@ impl Light {
         let met = |t: f32, radiance: Rgb| (t > 0.0 && t < ray.t_max).then_some((t, radiance));
         match self.emitter {
             Emitter::Rectangle { center, frame, half, radiance } => {
-                let (t, p) = meet_front(origin, direction, center, &frame)?;
-                let is_inside = p.x.abs() <= half[0] && p.y.abs() <= half[1];
-                is_inside.then(|| met(t, radiance)).flatten()
+                met(meet_rectangle(origin, direction, center, &frame, half), radiance)
             }
             Emitter::Disk { center, frame, radius, radiance } => {
-                let (t, p) = meet_front(origin, direction, center, &frame)?;
-                (p.x * p.x + p.y * p.y <= radius * radius).then(|| met(t, radiance)).flatten()
+                met(meet_disk(origin, direction, center, &frame, radius), radiance)
             }
             Emitter::Sphere { center, radius, radiance } => {
                 let (t, _) = sphere::nearest(origin, direction, center, radius)?;
@@ -224,26 +188,14 @@ impl Light {
     /// Density per solid angle with which [`Light::sample`] finds what a ray from `from` along the
     /// unit `direction` meets at distance `t`; 0 for lights without extent.
     pub fn pdf(&self, from: Vec3, direction: Vec3, t: f32) -> f32 {
-        let of_area = |normal: Vec3, area: f32| {
-            let cos = -normal.dot(direction);
-            if cos > 0.0 { t * t / (cos * area) } else { 0.0 }
-        };
         match self.emitter {
             Emitter::Rectangle { center, frame, half, .. } => {
-                match spherical_rectangle(half, seen_from(from, center, &frame)) {
-                    Some(whole) => (1.0 / whole.solid_angle) as f32,
-                    None => of_area(frame.z, 4.0 * half[0] * half[1]),
-                }
+                rectangle_pdf(from, direction, t, center, &frame, half)
             }
             Emitter::Disk { center, frame, radius, .. } => {
-                match spherical_ellipse(radius, seen_from(from, center, &frame)) {
-                    Some(cone) => cone.pdf(in_frame(&frame, direction.as_dvec3())) as f32,
-                    None => of_area(frame.z, PI * radius * radius),
-                }
+                disk_pdf(from, direction, t, center, &frame, radius)
             }
-            Emitter::Sphere { center, radius, .. } => {
-                sphere::cap(from, center, radius).map_or(0.0, |cap| 1.0 / (TAU * cap))
-            }
+            Emitter::Sphere { center, radius, .. } => sphere_pdf(from, center, radius),
             Emitter::SunCap { one_minus_cos, .. } => 1.0 / (TAU * one_minus_cos),
             Emitter::Point { .. } | Emitter::Spot { .. } | Emitter::Sun { .. } => 0.0,
         }
@@ -265,15 +217,18 @@ impl LightSample {
 }
 
 /// A point in the frame around a light's centre.
+#[inline(always)]
 fn seen_from(from: Vec3, center: Vec3, frame: &Frame) -> DVec3 {
     in_frame(frame, from.as_dvec3() - center.as_dvec3())
 }
 
+#[inline(always)]
 fn in_frame(frame: &Frame, v: DVec3) -> DVec3 {
     let Frame { x, y, z } = frame;
     DVec3::new(x.as_dvec3().dot(v), y.as_dvec3().dot(v), z.as_dvec3().dot(v))
 }
 
+#[inline(always)]
 fn in_world(frame: &Frame, v: DVec3) -> DVec3 {
     frame.x.as_dvec3() * v.x + frame.y.as_dvec3() * v.y + frame.z.as_dvec3() * v.z
 }
@@ -281,39 +236,6 @@ fn in_world(frame: &Frame, v: DVec3) -> DVec3 {
 /// From this distance on, in squared half diagonals or radii, light is sampled by area: distance and
 /// cosine hardly change over it.
 const FAR2: f64 = 100.0;
-
-/// A rectangle of these half extents from a point before it; `None` where it is sampled by area.
-fn spherical_rectangle(half: [f32; 2], seen: DVec3) -> Option<SphericalRectangle> {
-    let half = half.map(f64::from);
-    let reach2 = half[0] * half[0] + half[1] * half[1];
-    let is_near = seen.z > 0.0 && seen.length_squared() < FAR2 * reach2;
-    is_near.then(|| SphericalRectangle::new(half, seen)).flatten()
-}
-
-/// The same for a disk.
-fn spherical_ellipse(radius: f32, seen: DVec3) -> Option<SphericalEllipse> {
-    let radius = f64::from(radius);
-    let is_near = seen.z > 0.0 && seen.length_squared() < FAR2 * radius * radius;
-    is_near.then(|| SphericalEllipse::new(radius, seen)).flatten()
-}
-
-fn from_area(
-    from: Vec3,
-    point: Vec3,
-    normal: Vec3,
-    area: f32,
-    radiance: Rgb,
-) -> Option<LightSample> {
-    let reach = point - from;
-    let distance2 = reach.length_squared();
-    let direction = reach / distance2.sqrt();
-    let cos = -normal.dot(direction);
-    if !(cos > 0.0 && distance2 > 0.0) {
-        return None;
-    }
-    let pdf = distance2 / (cos * area);
-    Some(LightSample::of_place(reach, Some(normal), radiance, pdf))
-}
 
 fn from_point(from: Vec3, position: Vec3, intensity: impl Fn(Vec3) -> Rgb) -> Option<LightSample> {
     let reach = position - from;
@@ -326,14 +248,33 @@ fn from_point(from: Vec3, position: Vec3, intensity: impl Fn(Vec3) -> Rgb) -> Op
     Some(LightSample { direction, reach, t_max: 1.0, normal: None, weight, pdf: None })
 }
 
-/// Where a ray meets a plane from its front: the parameter, and the place in its frame.
-fn meet_front(origin: Vec3, direction: Vec3, center: Vec3, frame: &Frame) -> Option<(f32, Vec3)> {
+/// Where a ray meets a plane from its front: the parameter, else NaN, and the place in its frame.
+#[inline(always)]
+fn meet_front(origin: Vec3, direction: Vec3, center: Vec3, frame: &Frame) -> (f32, Vec3) {
     let cos = frame.z.dot(direction);
-    if cos >= 0.0 {
-        return None;
-    }
     let t = frame.z.dot(center - origin) / cos;
-    Some((t, frame.local_from_world(origin + direction * t - center)))
+    let place = frame.local_from_world(origin + direction * t - center);
+    (if cos < 0.0 { t } else { f32::NAN }, place)
+}
+
+/// The parameter at which a ray meets a rectangle from its front, else NaN.
+#[inline(always)]
+fn meet_rectangle(
+    origin: Vec3,
+    direction: Vec3,
+    center: Vec3,
+    frame: &Frame,
+    half: [f32; 2],
+) -> f32 {
+    let (t, p) = meet_front(origin, direction, center, frame);
+    if p.x.abs() <= half[0] && p.y.abs() <= half[1] { t } else { f32::NAN }
+}
+
+/// The same for a disk.
+#[inline(always)]
+fn meet_disk(origin: Vec3, direction: Vec3, center: Vec3, frame: &Frame, radius: f32) -> f32 {
+    let (t, p) = meet_front(origin, direction, center, frame);
+    if p.x * p.x + p.y * p.y <= radius * radius { t } else { f32::NAN }
 }
 
 /// The emitter of a light of some power and size.

@@ -50,6 +50,16 @@ pub struct Material {
 }
 
 impl Material {
+    /// Whether no light is scattered anywhere: black, and without gloss.
+    pub fn is_never_lit(&self) -> bool {
+        self.diffuse == ColorSource::constant(Rgb::ZERO) && self.specular == Rgb::ZERO
+    }
+
+    /// Whether it is a mirror or glass.
+    pub fn is_specular(&self) -> bool {
+        self.reflection.max_element() > 0.0 || self.is_glass()
+    }
+
     /// Whether light passes through.
     pub fn is_glass(&self) -> bool {
         self.transmission.max_element() > 0.0

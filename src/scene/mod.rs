@@ -17,6 +17,7 @@ use glam::Vec3;
 
 use crate::color::Rgb;
 use crate::geometry::Instance;
+use crate::math::vectorized::{BLOCK, Lane3};
 
 pub use assets::Assets;
 pub use camera::Camera;
@@ -76,6 +77,18 @@ impl Scene {
         match self.background {
             Background::Color(color) => color,
             Background::Texture(id) => self.textures[id as usize].eval_direction(direction),
+        }
+    }
+
+    /// [`Scene::background_radiance`] for a block of directions.
+    pub(crate) fn background_radiances(&self, directions: &Lane3, radiances: &mut Lane3) {
+        match self.background {
+            Background::Color(color) => {
+                *radiances = color.to_array().map(|channel| [channel; BLOCK]);
+            }
+            Background::Texture(id) => {
+                self.textures[id as usize].eval_directions(directions, radiances);
+            }
         }
     }
 }

@@ -15,12 +15,15 @@
 //! Sources: K. Perlin, "An Image Synthesizer", SIGGRAPH 1985; D. S. Ebert et al., "Texturing and
 //! Modeling", 3rd edition, 2003, chapters 2 and 12.
 
+mod block;
+
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use crate::color::{Rgb, luminance};
+use crate::math::elementary::{self, floor};
 use crate::math::noise::{Octaves, perlin};
 use crate::math::portable;
 use crate::scene::image::Image;
@@ -147,8 +150,9 @@ impl Texture {
 /// Looked up a little further along each axis, so that a face on a cell's border is not speckled.
 fn checker(scale: f64, colors: &[Rgb; 2], p: DVec3) -> Rgb {
     const SHIFT: f64 = 1e-4;
-    let cell = (p * scale + SHIFT).floor();
-    let parity = (cell.x + cell.y + cell.z).rem_euclid(2.0);
+    let q = p * scale + SHIFT;
+    let sum = floor(q.x) + floor(q.y) + floor(q.z);
+    let parity = sum - 2.0 * floor(0.5 * sum);
     colors[usize::from(parity >= 1.0)]
 }
 
@@ -161,35 +165,16 @@ impl Noise {
     /// The pattern's value at a point, 0..=1.
     pub fn value(&self, p: DVec3) -> f64 {
         let q = p * self.scale;
-        let value = match self.pattern {
-            Pattern::Spots => smooth_step(0.06, 0.2, self.octaves.fbm(self.displaced(q))),
-            Pattern::Marble => {
-                let bend = if self.distortion == 0.0 {
-                    0.0
-                } else {
-                    self.distortion * self.octaves.turbulence(q)
-                };
-                0.5 + 0.5 * portable::sin_f64(PI * (q.x + bend))
-            }
-            Pattern::Clouds => 0.5 + self.octaves.fbm(self.displaced(q)),
-            Pattern::Wood => {
-                let bend = if self.distortion == 0.0 {
-                    0.0
-                } else {
-                    self.distortion * self.octaves.fbm(q)
-                };
-                let r = (q.x * q.x + q.z * q.z).sqrt() + bend;
-                let f = r - r.floor();
-                const LATE: f64 = 0.85;
-                if f < LATE { (f / LATE).powi(2) } else { 1.0 - smooth_step(LATE, 1.0, f) }
-            }
+        let sum = match self.pattern {
+            Pattern::Spots | Pattern::Clouds => self.octaves.fbm(self.displaced(q)),
+            Pattern::Marble | Pattern::Wood if self.distortion == 0.0 => 0.0,
+            Pattern::Marble => self.octaves.turbulence(q),
+            Pattern::Wood => self.octaves.fbm(q),
         };
-        if value.is_finite() { value.clamp(0.0, 1.0) } else { 0.0 }
+        self.pattern.shape(q, sum, self.distortion)
     }
 
     fn displaced(&self, q: DVec3) -> DVec3 {
-        const ELSEWHERE: [DVec3; 3] =
-            [DVec3::new(31.7, 11.3, 5.9), DVec3::new(7.1, 43.9, 23.3), DVec3::new(53.3, 2.7, 37.1)];
         if self.distortion == 0.0 {
             return q;
         }
@@ -206,19 +191,23 @@ impl Noise {
     }
 
     fn luminance_gradient(&self, p: DVec3) -> Vec3 {
-        // A small part of the finest cell, yet far above the rounding of f64.
-        let finest = self.octaves.lacunarity.max(1.0).powi(self.octaves.count as i32 - 1);
-        let h = 1e-3 / (self.scale * finest);
-        let at = |d: DVec3| self.exact_luminance(p + d);
+        let h = self.step();
+        let at = |d: DVec3| self.exact_luminance(self.value(p + d));
         let slope = |axis: DVec3| (at(axis * h) - at(axis * -h)) / (2.0 * h);
         let gradient = DVec3::new(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z)).as_vec3();
         if gradient.is_finite() { gradient } else { Vec3::ZERO }
     }
 
-    /// Luminance in f64: a difference of rounded colours would be noise.
-    fn exact_luminance(&self, p: DVec3) -> f64 {
+    /// A small part of the finest cell, yet far above the rounding of f64.
+    fn step(&self) -> f64 {
+        let finest = self.octaves.lacunarity.max(1.0).powi(self.octaves.count as i32 - 1);
+        1e-3 / (self.scale * finest)
+    }
+
+    /// Luminance in f64 of a pattern's value: a difference of rounded colours would be noise.
+    fn exact_luminance(&self, value: f64) -> f64 {
         let n_steps = self.colors.len() - 1;
-        let at = self.value(p) * n_steps as f64;
+        let at = value * n_steps as f64;
         let step = (at as usize).min(n_steps.saturating_sub(1));
         let a = f64::from(luminance(self.colors[step]));
         let b = f64::from(luminance(self.colors[(step + 1).min(n_steps)]));
@@ -226,6 +215,31 @@ impl Noise {
     }
 }
 
+/// Where the three noises of a displacement are looked up.
+const ELSEWHERE: [DVec3; 3] =
+    [DVec3::new(31.7, 11.3, 5.9), DVec3::new(7.1, 43.9, 23.3), DVec3::new(53.3, 2.7, 37.1)];
+
+impl Pattern {
+    /// The pattern's value from a point, in cells, and its sum of noise.
+    #[inline(always)]
+    fn shape(self, q: DVec3, sum: f64, distortion: f64) -> f64 {
+        let value = match self {
+            Self::Spots => smooth_step(0.06, 0.2, sum),
+            Self::Marble => 0.5 + 0.5 * elementary::sin_half_turns(q.x + distortion * sum),
+            Self::Clouds => 0.5 + sum,
+            Self::Wood => {
+                let r = (q.x * q.x + q.z * q.z).sqrt() + distortion * sum;
+                let f = r - floor(r);
+                const LATE: f64 = 0.85;
+                let early = (f / LATE) * (f / LATE);
+                if f < LATE { early } else { 1.0 - smooth_step(LATE, 1.0, f) }
+            }
+        };
+        if value.is_finite() { value.clamp(0.0, 1.0) } else { 0.0 }
+    }
+}
+
+#[inline(always)]
 fn smooth_step(low: f64, high: f64, x: f64) -> f64 {
     let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)

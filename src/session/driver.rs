@@ -13,7 +13,7 @@ use crate::session::{Frame, Goal, Maps, Phase, Renderer, Shared, Wanted, lock};
 use crate::threads;
 
 /// A preview is made as fine as fits this.
-const PREVIEW_SECS: f64 = 0.02;
+const PREVIEW_SECS: f64 = 0.016;
 /// A full-size pass that takes longer than this is preceded by finer previews.
 const PATIENCE_SECS: f64 = 0.15;
 /// A pass is kept shorter than this where one sample allows.

@@ -200,45 +200,12 @@ thread_local! {
 
 /// The same functions compiled for each kind of processor.
 mod dispatch {
-    use std::sync::OnceLock;
-
     use super::{
         Fleet, Portable, Ray, RayBatch, Search, TakeAny, TakeNearest, WideBvh, packet, single,
     };
     #[cfg(target_arch = "x86_64")]
     use crate::geometry::lanes::{Avx2, Avx512};
-
-    #[derive(Clone, Copy)]
-    enum Level {
-        #[cfg(target_arch = "x86_64")]
-        Avx512,
-        #[cfg(target_arch = "x86_64")]
-        Avx2,
-        Portable,
-    }
-
-    fn level() -> Level {
-        static LEVEL: OnceLock<Level> = OnceLock::new();
-        *LEVEL.get_or_init(|| {
-            #[cfg(target_arch = "x86_64")]
-            {
-                let has_avx2 = is_x86_feature_detected!("avx2")
-                    && is_x86_feature_detected!("fma")
-                    && is_x86_feature_detected!("bmi1")
-                    && is_x86_feature_detected!("bmi2")
-                    && is_x86_feature_detected!("popcnt");
-                let has_avx512 =
-                    is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl");
-                if has_avx2 && has_avx512 {
-                    return Level::Avx512;
-                }
-                if has_avx2 {
-                    return Level::Avx2;
-                }
-            }
-            Level::Portable
-        })
-    }
+    use crate::math::vectorized::Level;
 
     macro_rules! compiled {
         ($($name:ident => $module:ident::$generic:ident, ($($argument:ident: $type:ty),*) -> $result:ty;)+) => {$(
@@ -253,7 +220,7 @@ mod dispatch {
                 fn avx2(bvh: &WideBvh, $($argument: $type),*) -> $result {
                     $module::$generic::<Avx2>(bvh, $($argument),*)
                 }
-                match level() {
+                match Level::of_machine() {
                     // SAFETY: the processor was asked for these features.
                     #[cfg(target_arch = "x86_64")]
                     Level::Avx512 => unsafe { avx512(bvh, $($argument),*) },

@@ -3,12 +3,13 @@
 use glam::Vec3;
 
 use crate::color::Rgb;
-use crate::geometry::Hit;
-use crate::math::{Ray, RayBatch};
-use crate::render::shading::Shading;
+use crate::geometry::{Hit, Surface};
+use crate::math::vectorized::{BLOCK, Lane, Lane3, set_vec3, vec3, vectorized};
+use crate::math::{Ray, RayBatch, RayBlock};
+use crate::render::shading::{Shading, ShadingBlock};
 use crate::render::world::World;
 use crate::scene::description::IntegratorKind;
-use crate::scene::light::LightSample;
+use crate::scene::light::{LightBlock, LightSample};
 
 /// Shadow rays, each with what it brings if nothing is in its way.
 #[derive(Default)]
@@ -40,20 +41,46 @@ impl Shadows {
         if light == Rgb::ZERO {
             return;
         }
-        let origin = shading.surface.leave(sample.direction);
+        let surface = &shading.surface;
+        let origin = surface.leave(sample.direction);
         let (direction, t_max) = if sample.t_max == f32::INFINITY {
             (sample.reach, f32::INFINITY)
         } else {
-            let from = shading.surface.point;
-            let target = from + sample.reach;
-            let magnitude = from.abs().max_element().max(target.abs().max_element());
-            let error = magnitude * (16.0 / 16_777_216.0);
-            let reach = target + sample.normal.unwrap_or(Vec3::ZERO) * error - origin;
-            (reach, 1.0 - (error / reach.length()).min(0.5))
+            clear_of(surface.point, origin, sample.reach, sample.normal.unwrap_or(Vec3::ZERO))
         };
         self.rays.push(Ray { origin, direction, t_max, source: shading.surface.source });
         self.slots.push(slot);
         self.contributions.push(light);
+    }
+
+    /// [`Shadows::push`] for the first `n` points of a block and the samples of one light.
+    pub(super) fn append(
+        &mut self,
+        n: usize,
+        slots: &Lane<u32>,
+        block: &ShadingBlock,
+        samples: &LightBlock,
+        light: &Lane3,
+    ) {
+        let mut rays = RayBlock::IDLE;
+        shadow_rays(block, samples, &mut rays);
+        let mut n_lit = 0;
+        for i in 0..n {
+            let light = vec3(light, i);
+            if light == Rgb::ZERO {
+                continue;
+            }
+            self.slots.push(slots[i]);
+            self.contributions.push(light);
+            for axis in 0..3 {
+                rays.origin[axis][n_lit] = rays.origin[axis][i];
+                rays.direction[axis][n_lit] = rays.direction[axis][i];
+            }
+            rays.t_max[n_lit] = rays.t_max[i];
+            rays.source[n_lit] = block.surface.source[i];
+            n_lit += 1;
+        }
+        self.rays.append(&rays, n_lit);
     }
 
     /// Adds what arrives, in the order of the rays.
@@ -75,6 +102,34 @@ impl Shadows {
         let arriving = self.contributions.iter().zip(&self.shares);
         for (slot, (contribution, share)) in self.slots.iter().zip(arriving) {
             radiance[*slot as usize] += *contribution * *share;
+        }
+    }
+}
+
+/// The direction and the end of a ray from `origin`, close to a point, to the place `reach` away from
+/// that point on a light of that normal.
+#[inline(always)]
+fn clear_of(point: Vec3, origin: Vec3, reach: Vec3, normal: Vec3) -> (Vec3, f32) {
+    let target = point + reach;
+    let magnitude = point.abs().max_element().max(target.abs().max_element());
+    let error = magnitude * (16.0 / 16_777_216.0);
+    let direction = target + normal * error - origin;
+    (direction, 1.0 - (error / direction.length()).min(0.5))
+}
+
+vectorized! {
+    fn shadow_rays(block: &ShadingBlock, samples: &LightBlock, rays: &mut RayBlock) {
+        let ShadingBlock { surface, .. } = block;
+        let is_far = samples.t_max == f32::INFINITY;
+        for i in 0..BLOCK {
+            let (point, normal) = (vec3(&surface.point, i), vec3(&surface.normal, i));
+            let direction = vec3(&samples.direction, i);
+            let origin = Surface::left(point, normal, surface.clearance[i], direction);
+            let reach = vec3(&samples.reach, i);
+            let (near, t_max) = clear_of(point, origin, reach, vec3(&samples.normal, i));
+            set_vec3(&mut rays.origin, i, origin);
+            set_vec3(&mut rays.direction, i, if is_far { reach } else { near });
+            rays.t_max[i] = if is_far { f32::INFINITY } else { t_max };
         }
     }
 }

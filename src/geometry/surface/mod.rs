@@ -1,11 +1,15 @@
 //! What a surface is like where a ray meets it.
 
+mod block;
+
 use glam::{DVec3, Vec2, Vec3};
 
 use crate::geometry::mesh::{ABSENT, Mesh};
 use crate::geometry::shape::{BASE, SIDE, TOP};
 use crate::geometry::{Geometry, Hit, Instance, Shape};
-use crate::math::{Frame, PrimitiveId, Ray, portable};
+use crate::math::{Frame, PrimitiveId, Ray, Transform, portable};
+
+pub(crate) use block::{HitBlock, SurfaceBlock};
 
 /// A point of a surface. Normals are outward: of a solid's outside, of a face's counter-clockwise
 /// side; they are not turned to the viewer yet.
@@ -51,9 +55,15 @@ impl Surface {
     /// Source: M. Pharr, W. Jakob and G. Humphreys, "Physically Based Rendering", 4th edition,
     /// 2023, section 6.8.6.
     pub fn leave(&self, direction: Vec3) -> Vec3 {
-        let side = if self.normal.dot(direction) >= 0.0 { 1.0 } else { -1.0 };
-        let step = self.normal * (side * self.clearance);
-        let moved = (self.point + step).to_array();
+        Self::left(self.point, self.normal, self.clearance, direction)
+    }
+
+    /// [`Surface::leave`] of the surface with these figures.
+    #[inline(always)]
+    pub(crate) fn left(point: Vec3, normal: Vec3, clearance: f32, direction: Vec3) -> Vec3 {
+        let side = if normal.dot(direction) >= 0.0 { 1.0 } else { -1.0 };
+        let step = normal * (side * clearance);
+        let moved = (point + step).to_array();
         let away = |axis: usize| match step[axis] {
             s if s > 0.0 => moved[axis].next_up(),
             s if s < 0.0 => moved[axis].next_down(),
@@ -69,14 +79,11 @@ impl Geometry {
         let instance = &self.instances()[hit.id.object as usize];
         let transform = instance.transform();
         let local = local_surface(instance, ray, hit);
-        let world = transform.world_from_object_point(local.point);
-        let point = world.as_vec3();
-        let normal = transform.world_from_object_normal(local.normal).normalize().as_vec3();
-        // Half a unit in the last place is 2^-24 of the magnitude; 4 of them bound the rounding of
-        // the position, the transform back, and the differences of the triangle test.
-        const UNIT: f64 = 4.0 / 16_777_216.0;
-        let error = world.abs() * UNIT + transform.spread(local.magnitude * UNIT);
-        let clearance = error.dot(normal.abs().as_dvec3()) as f32;
+        let (point, normal, clearance) = if transform.is_identity() {
+            in_world::<true>(transform, local.point, local.normal, local.magnitude)
+        } else {
+            in_world::<false>(transform, local.point, local.normal, local.magnitude)
+        };
         Surface {
             point,
             normal,
@@ -89,6 +96,27 @@ impl Geometry {
             clearance,
         }
     }
+}
+
+/// Point, unit normal and clearance in the world, of a point and a normal of an object.
+#[inline(always)]
+fn in_world<const IS_IDENTITY: bool>(
+    transform: &Transform,
+    point: DVec3,
+    normal: DVec3,
+    magnitude: f64,
+) -> (Vec3, Vec3, f32) {
+    let (world, normal) = if IS_IDENTITY {
+        (point, normal)
+    } else {
+        (transform.moved_point(point), transform.moved_normal(normal))
+    };
+    let normal = normal.normalize().as_vec3();
+    // Half a unit in the last place is 2^-24 of the magnitude; 4 of them bound the rounding of
+    // the position, the transform back, and the differences of the triangle test.
+    const UNIT: f64 = 4.0 / 16_777_216.0;
+    let error = world.abs() * UNIT + transform.spread(magnitude * UNIT);
+    (world.as_vec3(), normal, error.dot(normal.abs().as_dvec3()) as f32)
 }
 
 fn local_surface(instance: &Instance, ray: &Ray, hit: Hit) -> Local {
@@ -112,24 +140,11 @@ fn on_triangle(mesh: &Mesh, id: u32, origin: DVec3, direction: DVec3, magnitude:
     let [a, b, c] = mesh.corners(id).map(Vec3::as_dvec3);
     let (ab, ac) = (b - a, c - a);
     let cross = ab.cross(ac);
-    let normal = cross.try_normalize().unwrap_or(DVec3::Y);
-    // Cramer's rule in f64, then back onto the triangle: the hit is known to be on it.
-    let p = direction.cross(ac);
-    let det = ab.dot(p);
-    let (mut v, mut w) = (1.0 / 3.0, 1.0 / 3.0);
-    if det != 0.0 {
-        let s = origin - a;
-        v = (s.dot(p) / det).clamp(0.0, 1.0);
-        w = (direction.dot(s.cross(ab)) / det).clamp(0.0, 1.0 - v);
-    }
-    let weights = [1.0 - v - w, v, w];
-    let point = a + ab * v + ac * w;
+    let FacePoint { point, normal, weights } = on_face([a, b, c], origin, direction);
     let triangle = id as usize;
     let shading_normal = match mesh.normal_ids.get(triangle) {
         Some(ids) if ids[0] != ABSENT => {
-            let corner = |k: usize| mesh.normals[ids[k] as usize].as_dvec3() * weights[k];
-            let n = (corner(0) + corner(1) + corner(2)).try_normalize().unwrap_or(normal);
-            if n.dot(normal) < 0.0 { -n } else { n }
+            smooth_normal(ids.map(|id| mesh.normals[id as usize]), weights, normal)
         }
         _ => normal,
     };
@@ -150,6 +165,45 @@ fn on_triangle(mesh: &Mesh, id: u32, origin: DVec3, direction: DVec3, magnitude:
     Local { point, normal, shading_normal, uv, uv_gradients, slot, is_flat: true, magnitude }
 }
 
+/// A point of a triangle.
+struct FacePoint {
+    point: DVec3,
+    /// Unit; upwards where the triangle has no area.
+    normal: DVec3,
+    /// Of the three corners.
+    weights: [f64; 3],
+}
+
+/// Where a ray that is known to meet a triangle does: by Cramer's rule, then back onto the triangle.
+#[inline(always)]
+fn on_face([a, b, c]: [DVec3; 3], origin: DVec3, direction: DVec3) -> FacePoint {
+    let (ab, ac) = (b - a, c - a);
+    let normal = unit_or(ab.cross(ac), DVec3::Y);
+    let p = direction.cross(ac);
+    let det = ab.dot(p);
+    let s = origin - a;
+    let is_plain = det != 0.0;
+    let v = if is_plain { (s.dot(p) / det).clamp(0.0, 1.0) } else { 1.0 / 3.0 };
+    let w = direction.dot(s.cross(ab)) / det;
+    let w = if is_plain { w.max(0.0).min(1.0 - v) } else { 1.0 / 3.0 };
+    FacePoint { point: a + ab * v + ac * w, normal, weights: [1.0 - v - w, v, w] }
+}
+
+/// Corner normals by their weights, on the side of the flat one; the flat one where they cancel.
+#[inline(always)]
+fn smooth_normal(corners: [Vec3; 3], weights: [f64; 3], flat: DVec3) -> DVec3 {
+    let corner = |k: usize| corners[k].as_dvec3() * weights[k];
+    let n = unit_or(corner(0) + corner(1) + corner(2), flat);
+    if n.dot(flat) < 0.0 { -n } else { n }
+}
+
+#[inline(always)]
+fn unit_or(v: DVec3, fallback: DVec3) -> DVec3 {
+    let scale = v.length_recip();
+    let is_plain = scale.is_finite() && scale > 0.0;
+    if is_plain { v * scale } else { fallback }
+}
+
 fn on_solid(shape: &Shape, primitive: u32, p: DVec3) -> Local {
     let mut local = Local {
         point: p,
@@ -167,7 +221,7 @@ fn on_solid(shape: &Shape, primitive: u32, p: DVec3) -> Local {
         Shape::Plane { point, normal } => {
             local.normal = *normal;
             local.is_flat = true;
-            local.point = p - *normal * (p - *point).dot(*normal);
+            local.point = onto_plane(p, *point, *normal);
             let frame = Frame::from_normal_tangent(normal.as_vec3(), Vec3::X);
             let (x, y) = (frame.x.as_dvec3(), frame.y.as_dvec3());
             let from = local.point - *point;
@@ -186,10 +240,22 @@ fn on_solid(shape: &Shape, primitive: u32, p: DVec3) -> Local {
     local
 }
 
+#[inline(always)]
+fn onto_plane(p: DVec3, point: DVec3, normal: DVec3) -> DVec3 {
+    p - normal * (p - point).dot(normal)
+}
+
+/// The point, and the unit normal there.
+#[inline(always)]
+fn onto_sphere(p: DVec3, center: DVec3, radius: f64) -> (DVec3, DVec3) {
+    let n = unit_or(p - center, DVec3::Y);
+    (center + n * radius, n)
+}
+
 fn on_sphere(local: &mut Local, center: DVec3, radius: f64) {
-    let n = (local.point - center).try_normalize().unwrap_or(DVec3::Y);
+    let n;
+    (local.point, n) = onto_sphere(local.point, center, radius);
     local.normal = n;
-    local.point = center + n * radius;
     let u = 0.5 + portable::atan2_f64(n.x, n.z) / std::f64::consts::TAU;
     let v = 0.5 + portable::asin_f64(n.y.clamp(-1.0, 1.0)) / std::f64::consts::PI;
     local.uv = Vec2::new(u as f32, v as f32);
