@@ -2,9 +2,9 @@
 
 use glam::{DVec3, Vec3};
 
+use crate::geometry::crossings::{Crossings, ObjectRays};
 use crate::geometry::mesh_tree::TracedMesh;
 use crate::geometry::nearest::{Nearest, Search};
-use crate::geometry::shape::{Crossings, ObjectRays};
 use crate::geometry::{AcceleratorKind, Shape, TraversalCost};
 use crate::math::vectorized::{BLOCK, set_dvec3, set_vec3, vec3, vectorized};
 use crate::math::{Aabb, PrimitiveId, Ray, RayBatch, RayBlock, Transform};

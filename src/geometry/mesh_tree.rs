@@ -7,12 +7,15 @@ use std::time::Instant;
 
 use glam::{DVec3, Vec3};
 
-use crate::geometry::kd_tree::{self, Item, KdTree, Split, Walk};
+use crate::geometry::kd_tree::{
+    self, Item, KdTree, LANES, Lanes, PacketRays, PacketWalk, Split, Visit, Walk,
+};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::nearest::{Nearest, Search};
-use crate::geometry::triangle::ShearedRay;
+use crate::geometry::triangle::{ShearedRay, ShearedRays};
 use crate::geometry::wide_bvh::WideBvh;
 use crate::geometry::{AcceleratorKind, Stopped, TraversalCost};
+use crate::math::vectorized::vectorized;
 use crate::math::{Aabb, PrimitiveId, Ray, RayBatch};
 
 /// A mesh with the trees that have been asked for; each is built once.
@@ -186,11 +189,17 @@ impl MeshTree {
         if let Structure::WideBvh(bvh) = &self.structure {
             return bvh.intersect_batch(rays, object, nearest);
         }
-        for (index, nearest) in nearest.iter_mut().enumerate() {
-            let ray = rays.ray(index);
-            let mut search = Search::from(&ray, *nearest);
-            self.intersect(&ray, object, &mut search);
-            *nearest = search.nearest;
+        for (packet, nearest) in nearest.chunks_mut(LANES).enumerate() {
+            let first = packet * LANES;
+            if self.walk_packet(rays, first, object, nearest, false) {
+                continue;
+            }
+            for (i, nearest) in nearest.iter_mut().enumerate() {
+                let ray = rays.ray(first + i);
+                let mut search = Search::from(&ray, *nearest);
+                self.intersect(&ray, object, &mut search);
+                *nearest = search.nearest;
+            }
         }
     }
 
@@ -199,9 +208,36 @@ impl MeshTree {
         if let Structure::WideBvh(bvh) = &self.structure {
             return bvh.occluded_batch(rays, object, blocked);
         }
-        for (index, blocked) in blocked.iter_mut().enumerate() {
-            *blocked = *blocked || self.occluded(&rays.ray(index), object);
+        for (packet, blocked) in blocked.chunks_mut(LANES).enumerate() {
+            let first = packet * LANES;
+            let mut nearest = [Nearest::new(-1.0); LANES];
+            for (i, is_blocked) in blocked.iter().enumerate() {
+                nearest[i] = Nearest::new(if *is_blocked { -1.0 } else { rays.t_max[first + i] });
+            }
+            let is_packet =
+                self.walk_packet(rays, first, object, &mut nearest[..blocked.len()], true);
+            for (i, (blocked, nearest)) in blocked.iter_mut().zip(&nearest).enumerate() {
+                *blocked |= if is_packet {
+                    nearest.is_hit()
+                } else {
+                    !*blocked && self.occluded(&rays.ray(first + i), object)
+                };
+            }
         }
+    }
+
+    /// Takes the hits of up to [`LANES`] rays from `first` on, one `nearest` each; of each ray only
+    /// one where `any_will_do`. `false` where they do not go together, and nothing is done.
+    fn walk_packet(
+        &self,
+        rays: &RayBatch,
+        first: usize,
+        object: u32,
+        nearest: &mut [Nearest],
+        any_will_do: bool,
+    ) -> bool {
+        let Structure::KdTree(tree, triangles) = &self.structure else { return false };
+        walk_kd_tree(tree, triangles, rays, first, object, nearest, any_will_do)
     }
 
     fn visit(&self, ray: &Ray, mut visit: impl FnMut(&[Triangle]) -> f32) {
@@ -234,6 +270,62 @@ impl MeshTree {
             Structure::KdTree(tree, triangles) => tree.n_bytes() + size_of_val(&triangles[..]),
             Structure::List(triangles) => size_of_val(&triangles[..]),
         }
+    }
+}
+
+/// What a packet does with the triangles of a leaf.
+struct PacketVisit<'a> {
+    rays: ShearedRays,
+    triangles: &'a [Triangle],
+    object: u32,
+    nearest: &'a mut [Nearest],
+    sources: &'a [PrimitiveId],
+    any_will_do: bool,
+    /// Parameters up to which hits count.
+    ends: Lanes<f32>,
+}
+
+impl Visit for PacketVisit<'_> {
+    #[inline(always)]
+    fn visit(&mut self, items: Range<usize>, limits: &mut Lanes<f32>) {
+        for triangle in &self.triangles[items] {
+            let mut t = [f32::NAN; LANES];
+            if !self.rays.intersect(triangle.corners, &self.ends, &mut t) {
+                continue;
+            }
+            let id = PrimitiveId { object: self.object, primitive: triangle.id };
+            for (i, nearest) in self.nearest.iter_mut().enumerate() {
+                if t[i].is_nan() {
+                    continue;
+                }
+                nearest.offer(t[i], id, self.sources[i]);
+                let is_done = self.any_will_do && nearest.is_hit();
+                self.ends[i] = if is_done { -1.0 } else { nearest.t() };
+                limits[i] = self.ends[i];
+            }
+        }
+    }
+}
+
+vectorized! {
+    fn walk_kd_tree(
+        tree: &KdTree,
+        triangles: &[Triangle],
+        rays: &RayBatch,
+        first: usize,
+        object: u32,
+        nearest: &mut [Nearest],
+        any_will_do: bool,
+    ) -> bool {
+        let packet = PacketRays::new(rays, first, nearest.iter().map(Nearest::t));
+        let Some(walk) = PacketWalk::new(&packet, &tree.bounds) else { return false };
+        let Some(sheared) = ShearedRays::new(&packet) else { return false };
+        let sources = &rays.source[first..first + nearest.len()];
+        let ends = packet.t_max;
+        let mut visit =
+            PacketVisit { rays: sheared, triangles, object, nearest, sources, any_will_do, ends };
+        tree.walk_packet(&walk, &mut visit);
+        true
     }
 }
 

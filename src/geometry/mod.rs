@@ -6,6 +6,7 @@
 //! gives the same answers to the last bit: of equal distances the lowest primitive wins.
 
 mod cost;
+mod crossings;
 mod extent;
 mod instance;
 pub mod kd_tree;

@@ -10,7 +10,6 @@ use glam::DVec3;
 
 use crate::geometry::mesh_tree::TracedMesh;
 use crate::math::Aabb;
-use crate::math::vectorized::{BLOCK, DLane3, Lane, dvec3, vectorized};
 
 /// A shape in object space. Directions are unit vectors, radii above 0.
 #[derive(Clone, Debug)]
@@ -90,16 +89,16 @@ pub(super) const TOP: u32 = 2;
 
 /// One end of a ray's stay inside a solid: the parameter, and the primitive crossed there.
 #[derive(Clone, Copy)]
-struct End {
-    t: f64,
-    primitive: u32,
+pub(super) struct End {
+    pub(super) t: f64,
+    pub(super) primitive: u32,
 }
 
 /// A ray's stay inside a convex set.
 #[derive(Clone, Copy)]
-struct Stay {
-    enter: End,
-    exit: End,
+pub(super) struct Stay {
+    pub(super) enter: End,
+    pub(super) exit: End,
 }
 
 impl Stay {
@@ -109,7 +108,7 @@ impl Stay {
     }
 
     #[inline(always)]
-    fn between(enter: f64, exit: f64, primitive: u32) -> Self {
+    pub(super) fn between(enter: f64, exit: f64, primitive: u32) -> Self {
         Self { enter: End { t: enter, primitive }, exit: End { t: exit, primitive } }
     }
 
@@ -189,90 +188,6 @@ impl Shape {
     }
 }
 
-/// What [`Shape::crossings`] finds for a block of rays: parameters, NaN where there is none, and
-/// primitives.
-pub(super) struct Crossings {
-    pub(super) t: [Lane<f32>; 2],
-    pub(super) primitive: [Lane<u32>; 2],
-}
-
-impl Crossings {
-    /// Nothing found.
-    pub(super) const NONE: Self = Self { t: [[f32::NAN; BLOCK]; 2], primitive: [[0; BLOCK]; 2] };
-
-    #[inline(always)]
-    fn set(&mut self, i: usize, stay: Stay) {
-        let Stay { enter, exit } = stay;
-        let is_met = enter.t <= exit.t;
-        for (k, end) in [enter, exit].into_iter().enumerate() {
-            let is_found = is_met && end.t.is_finite();
-            self.t[k][i] = if is_found { end.t as f32 } else { f32::NAN };
-            self.primitive[k][i] = end.primitive;
-        }
-    }
-}
-
-impl Shape {
-    /// [`Shape::crossings`] for a block of rays in object space.
-    pub(super) fn crossings_of_block(&self, rays: &ObjectRays, crossings: &mut Crossings) {
-        match self {
-            Self::Mesh(_) => {}
-            Self::Plane { point, normal } => plane_crossings(*point, *normal, rays, crossings),
-            Self::Sphere { center, radius } => sphere_crossings(*center, *radius, rays, crossings),
-            Self::Box { min, max } => box_crossings(*min, *max, rays, crossings),
-            Self::Cone { .. } | Self::Cylinder { .. } => {
-                for i in 0..BLOCK {
-                    let (origin, direction) = (dvec3(&rays.origin, i), dvec3(&rays.direction, i));
-                    for (k, crossing) in self.crossings(origin, direction).into_iter().enumerate() {
-                        let (t, primitive) = crossing.unwrap_or((f64::NAN, 0));
-                        (crossings.t[k][i], crossings.primitive[k][i]) = (t as f32, primitive);
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// A block of rays in object space.
-pub(super) struct ObjectRays {
-    pub(super) origin: DLane3,
-    pub(super) direction: DLane3,
-}
-
-vectorized! {
-    fn plane_crossings(
-        point: DVec3,
-        normal: DVec3,
-        rays: &ObjectRays,
-        crossings: &mut Crossings,
-    ) {
-        for i in 0..BLOCK {
-            let t = plane_root(dvec3(&rays.origin, i), dvec3(&rays.direction, i), point, normal);
-            crossings.t[0][i] = if t.is_finite() { t as f32 } else { f32::NAN };
-        }
-    }
-    fn sphere_crossings(
-        center: DVec3,
-        radius: f64,
-        rays: &ObjectRays,
-        crossings: &mut Crossings,
-    ) {
-        for i in 0..BLOCK {
-            let (origin, direction) = (dvec3(&rays.origin, i), dvec3(&rays.direction, i));
-            let (discriminant, t0, t1) = sphere_roots(origin - center, direction, radius);
-            let (enter, exit) = (t0.min(t1), t0.max(t1));
-            let limit = if discriminant >= 0.0 { exit } else { f64::NEG_INFINITY };
-            crossings.set(i, Stay::between(enter, limit, 0));
-        }
-    }
-    fn box_crossings(min: DVec3, max: DVec3, rays: &ObjectRays, crossings: &mut Crossings) {
-        for i in 0..BLOCK {
-            let (origin, direction) = (dvec3(&rays.origin, i), dvec3(&rays.direction, i));
-            crossings.set(i, in_box(min - origin, max - origin, direction));
-        }
-    }
-}
-
 /// Half extents of a disk's bounds.
 fn disk_reach(axis: DVec3, radius: f64) -> DVec3 {
     let w = axis.normalize();
@@ -309,7 +224,7 @@ pub(super) fn plane_root(origin: DVec3, direction: DVec3, point: DVec3, normal: 
 
 /// `low` and `high` are the corners as seen from the ray's origin. Faces are numbered -x, +x, -y, …
 #[inline(always)]
-fn in_box(low: DVec3, high: DVec3, d: DVec3) -> Stay {
+pub(super) fn in_box(low: DVec3, high: DVec3, d: DVec3) -> Stay {
     let mut stay = Stay::everywhere(0);
     for axis in 0..3 {
         let primitive = 2 * axis as u32;

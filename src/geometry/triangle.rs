@@ -13,6 +13,7 @@
 
 use glam::Vec3;
 
+use crate::geometry::kd_tree::{LANES, Lanes, PacketRays};
 use crate::math::Ray;
 
 /// What the test needs of a direction, computed once: the order of axes that makes z the largest
@@ -35,17 +36,24 @@ impl Axes {
     #[inline(always)]
     pub(super) fn new(direction: Vec3) -> Self {
         let a = direction.abs();
-        let z = if a.x > a.y {
-            if a.x > a.z { 0 } else { 2 }
-        } else if a.y > a.z {
-            1
-        } else {
-            2
-        };
-        let order = [(z + 1) % 3, (z + 2) % 3, z];
+        let order = order_of(largest_axis(a.x, a.y, a.z));
         let [x, y, speed] = order.map(|axis| direction[axis]);
         Self { order, shear: [x / speed, y / speed], speed }
     }
+}
+
+/// Which is the largest: of x and y the latter, and z, where they are equal.
+#[inline(always)]
+fn largest_axis(x: f32, y: f32, z: f32) -> usize {
+    let of_two = if x > y { 0 } else { 1 };
+    let largest = if x > y { x } else { y };
+    if largest > z { of_two } else { 2 }
+}
+
+/// The order of axes that has that one last.
+#[inline(always)]
+fn order_of(last: usize) -> [usize; 3] {
+    [(last + 1) % 3, (last + 2) % 3, last]
 }
 
 /// A ray ready for tests against triangles.
@@ -82,6 +90,84 @@ impl ShearedRay {
     }
 }
 
+/// Rays of a packet, all with the same order of axes, ready for tests against triangles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ShearedRays {
+    order: [usize; 3],
+    /// In that order.
+    origin: [Lanes<f32>; 3],
+    shear: [Lanes<f32>; 2],
+    speed: Lanes<f32>,
+}
+
+impl ShearedRays {
+    /// `None` where rays differ in the order of axes.
+    #[inline(always)]
+    pub(super) fn new(rays: &PacketRays) -> Option<Self> {
+        let [x, y, z] = &rays.direction;
+        let first = largest_axis(x[0].abs(), y[0].abs(), z[0].abs());
+        let mut n_others = 0_u32;
+        for i in 0..LANES {
+            let largest = largest_axis(x[i].abs(), y[i].abs(), z[i].abs());
+            n_others += u32::from(largest != first);
+        }
+        if n_others > 0 {
+            return None;
+        }
+        let order = order_of(first);
+        let [along_x, along_y, speed] = order.map(|axis| rays.direction[axis]);
+        let mut shear = [[0.0; LANES]; 2];
+        for i in 0..LANES {
+            shear[0][i] = along_x[i] / speed[i];
+            shear[1][i] = along_y[i] / speed[i];
+        }
+        Some(Self { order, origin: order.map(|axis| rays.origin[axis]), shear, speed })
+    }
+
+    /// [`ShearedRay::intersect`] for all rays: parameters above 0 and not beyond the limits, else
+    /// NaN. Whether there is any.
+    #[inline(always)]
+    pub(super) fn intersect(
+        &self,
+        corners: [Vec3; 3],
+        limits: &Lanes<f32>,
+        t: &mut Lanes<f32>,
+    ) -> bool {
+        let [kx, ky, kz] = self.order;
+        let mut sheared = [[[0.0; LANES]; 3]; 3];
+        let mut n_candidates = 0_u32;
+        for (sheared, corner) in sheared.iter_mut().zip(corners) {
+            let (x, y, z) = (corner[kx], corner[ky], corner[kz]);
+            for i in 0..LANES {
+                let along = z - self.origin[2][i];
+                sheared[0][i] = (x - self.origin[0][i]) - self.shear[0][i] * along;
+                sheared[1][i] = (y - self.origin[1][i]) - self.shear[1][i] * along;
+                sheared[2][i] = along;
+            }
+        }
+        let [a, b, c] = &sheared;
+        for i in 0..LANES {
+            let edge =
+                |p: &[Lanes<f32>; 3], q: &[Lanes<f32>; 3]| p[0][i] * q[1][i] - p[1][i] * q[0][i];
+            let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
+            let is_outside = (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0);
+            n_candidates += u32::from(!is_outside);
+        }
+        if n_candidates == 0 {
+            return false;
+        }
+        let mut n_hits = 0_u32;
+        for i in 0..LANES {
+            let corner = |p: &[Lanes<f32>; 3]| [p[0][i], p[1][i], p[2][i]];
+            let (is_met, at) = decided(corner(a), corner(b), corner(c), self.speed[i]);
+            let is_hit = is_met && at > 0.0 && at <= limits[i];
+            t[i] = if is_hit { at } else { f32::NAN };
+            n_hits += u32::from(is_hit);
+        }
+        n_hits > 0
+    }
+}
+
 /// Whether the area between the ray and an edge is certainly below 0, or certainly above: rounding
 /// keeps the order of two products, so their difference has the right sign wherever it is not 0.
 #[inline(always)]
@@ -93,15 +179,20 @@ fn certain_sign(p: [f32; 3], q: [f32; 3]) -> (bool, bool) {
 /// The test of corners in sheared space, with exact signs; what decides every hit.
 #[inline]
 pub(super) fn exact(a: [f32; 3], b: [f32; 3], c: [f32; 3], speed: f32) -> Option<f32> {
+    let (is_met, t) = decided(a, b, c, speed);
+    is_met.then_some(t)
+}
+
+/// [`exact`] without branches.
+#[inline(always)]
+fn decided(a: [f32; 3], b: [f32; 3], c: [f32; 3], speed: f32) -> (bool, f32) {
     let (u, v, w) = (exact_edge(c, b), exact_edge(a, c), exact_edge(b, a));
     let det = u + v + w;
     let is_below = u < 0.0 || v < 0.0 || w < 0.0;
     let is_above = u > 0.0 || v > 0.0 || w > 0.0;
-    if (is_below && is_above) || det == 0.0 {
-        return None;
-    }
-    let [z_a, z_b, z_c] = [a, b, c].map(|corner| f64::from(corner[2]));
-    Some(((u * z_a + v * z_b + w * z_c) / (det * f64::from(speed))) as f32)
+    let [z_a, z_b, z_c] = [f64::from(a[2]), f64::from(b[2]), f64::from(c[2])];
+    let t = ((u * z_a + v * z_b + w * z_c) / (det * f64::from(speed))) as f32;
+    (!(is_below && is_above) && det != 0.0, t)
 }
 
 /// Twice the area between the ray and an edge, rounded once: its sign is right.

@@ -6,30 +6,33 @@
 //! of what glows and of the sky; scattered rays find the latter too, and both are weighted by the
 //! power heuristic.
 
+mod block_light;
+mod continuation;
 mod direct_light;
+mod first_rays;
 mod groups;
+mod meeting;
 mod shadows;
 
 use std::ops::Range;
 
 use glam::{Vec2, Vec3};
 
-use crate::brdf::fresnel;
-use crate::color::{Rgb, luminance};
+use crate::color::Rgb;
 use crate::geometry::{Hit, HitBlock};
 use crate::math::sampler::{Net, NumbersBlock, SampleNumbers, Sampler};
 use crate::math::vectorized::{BLOCK, Lane, Lane3, NO_LANES, set_vec3, vec3};
-use crate::math::{PrimitiveId, Ray, RayBatch, RayBlock};
+use crate::math::{PrimitiveId, RayBatch};
 use crate::render::PassStatistics;
 use crate::render::pixel::PixelSums;
 use crate::render::plan::Tile;
-use crate::render::shading::{Coat, Shading, ShadingBlock};
+use crate::render::shading::{Coat, ShadingBlock};
 use crate::render::world::World;
-use crate::scene::Camera;
 use crate::scene::description::IntegratorKind;
 use crate::scene::light::LightBlock;
 
 use direct_light::LightChoice;
+use first_rays::FirstRays;
 use groups::Groups;
 use shadows::Shadows;
 
@@ -218,78 +221,6 @@ impl<'a> TileRenderer<'a> {
         self.radiance.resize(self.paths.len(), Rgb::ZERO);
     }
 
-    /// What the rays of a wave meet: adds visible lights and the background, and groups the rest.
-    fn meet(&mut self) {
-        let world = self.world;
-        self.groups.clear();
-        for start in (0..self.paths.len()).step_by(BLOCK) {
-            let n = BLOCK.min(self.paths.len() - start);
-            let lights = self.lights_before(start, n);
-            for (i, light) in lights.into_iter().enumerate().take(n) {
-                let index = start + i;
-                let path = &self.paths[index];
-                if let Some(light) = light {
-                    if path.scattered.is_none() {
-                        self.add(*path, world.job.scene.lights[light as usize].radiance());
-                    }
-                    continue;
-                }
-                if let Some(hit) = self.hits[index] {
-                    self.groups.push(world, index as u32, hit);
-                    continue;
-                }
-                self.lost.push(index as u32);
-            }
-        }
-        self.groups.sort();
-        self.add_background();
-    }
-
-    /// Adds the background to the paths that have left the scene.
-    fn add_background(&mut self) {
-        let world = self.world;
-        let (mut directions, mut radiances) = (NO_LANES, NO_LANES);
-        for start in (0..self.lost.len()).step_by(BLOCK) {
-            let n = BLOCK.min(self.lost.len() - start);
-            for i in 0..n {
-                let index = self.lost[start + i] as usize;
-                set_vec3(&mut directions, i, self.rays.ray(index).direction.normalize());
-            }
-            world.job.scene.background_radiances(&directions, &mut radiances);
-            for i in 0..n {
-                let path = self.paths[self.lost[start + i] as usize];
-                let direction = vec3(&directions, i);
-                let share = path.scattered.map_or(1.0, |last| {
-                    power(last.pdf, world.emission.sky_pdf(last.total, direction))
-                });
-                self.add(path, vec3(&radiances, i) * share);
-            }
-        }
-        self.lost.clear();
-    }
-
-    /// Number of the nearest visible light before what each of `n` rays meets; suns are behind
-    /// everything.
-    fn lights_before(&self, start: usize, n: usize) -> Lane<Option<u32>> {
-        let mut nearest = [None; BLOCK];
-        let lights = self.world.job.scene.lights.iter().enumerate();
-        let mut rays = None;
-        let (mut best, mut t) = ([f32::INFINITY; BLOCK], [f32::NAN; BLOCK]);
-        for (index, light) in lights.filter(|(_, light)| light.visible && light.has_extent()) {
-            let rays = rays.get_or_insert_with(|| self.rays.block(start, n));
-            light.intersect_block(rays, &mut t);
-            for i in 0..n {
-                let t_surface = self.hits[start + i].map_or(f32::INFINITY, |hit| hit.t);
-                let is_first = nearest[i].is_none() || t[i] < best[i];
-                let is_before = t[i] < t_surface || t_surface == f32::INFINITY;
-                if t[i] > 0.0 && is_first && is_before {
-                    (nearest[i], best[i]) = (Some(index as u32), t[i]);
-                }
-            }
-        }
-        nearest
-    }
-
     /// Adds the light of all surfaces met, block by block, leaves shadow rays, and goes on.
     fn shade(&mut self, block: &mut Block) {
         for group in 0..self.groups.len() {
@@ -368,100 +299,6 @@ impl<'a> TileRenderer<'a> {
     fn add(&mut self, path: Path, radiance: Rgb) {
         self.radiance[path.slot as usize] += path.throughput * radiance;
     }
-
-    /// Radiance of the nearest visible light before `t_surface`; suns are behind everything.
-    fn visible_light(&self, ray: &Ray, t_surface: f32) -> Option<Rgb> {
-        let mut nearest: Option<(f32, Rgb)> = None;
-        for light in self.world.job.scene.lights.iter().filter(|light| light.visible) {
-            let Some((t, radiance)) = light.intersect(ray) else { continue };
-            let is_first = nearest.is_none_or(|(best, _)| t < best);
-            if is_first && (t < t_surface || t_surface == f32::INFINITY) {
-                nearest = Some((t, radiance));
-            }
-        }
-        nearest.map(|(_, radiance)| radiance)
-    }
-
-    /// Chooses one way to go on, in proportion to what each reflects.
-    fn go_on(&mut self, path: Path, shading: &Shading<'_>) {
-        let material = shading.material;
-        let scatters = self.world.job.settings.integrator == IntegratorKind::Path;
-        let glossy = luminance(shading.glossy.diffuse) + luminance(shading.glossy.specular);
-        let weights = [
-            luminance(material.reflection),
-            luminance(material.transmission),
-            if scatters { glossy } else { 0.0 },
-        ];
-        let total: f32 = weights.iter().sum();
-        if total <= 0.0 {
-            return;
-        }
-        let scattering = weights[2] / total;
-        let emitters =
-            if scattering > 0.0 { self.sample_emitters(path, shading, scattering) } else { 0.0 };
-        let [choice, roulette] = path.numbers.pair(dimension::of(path.depth, dimension::CHOICE));
-        let choice = choice * total;
-        let step = if choice < weights[0] {
-            self.mirror(shading, shading.wo).map(|wi| (wi, material.reflection, None, weights[0]))
-        } else if choice < weights[0] + weights[1] || weights[2] == 0.0 {
-            let within = ((choice - weights[0]) / weights[1]).clamp(0.0, 1.0);
-            self.through_glass(shading, within)
-                .map(|wi| (wi, material.transmission, None, weights[1]))
-        } else {
-            self.scatter(path, shading).map(|(wi, value, pdf)| {
-                let (from, normal) = (shading.surface.point, shading.frame.z);
-                let (object, pdf) = (shading.object, scattering * pdf);
-                let last = Scattered { from, normal, object, pdf, total: emitters };
-                (wi, value, Some(last), weights[2])
-            })
-        };
-        let Some((direction, value, scattered, weight)) = step else { return };
-        let mut throughput = path.throughput * value * (total / weight);
-        let depth = path.depth + 1;
-        if depth >= ROULETTE_DEPTH {
-            let survival = throughput.max_element().min(1.0);
-            if roulette >= survival {
-                return;
-            }
-            throughput /= survival;
-        }
-        if throughput == Rgb::ZERO {
-            return;
-        }
-        let mut ray = Ray::new(shading.surface.leave(direction), direction);
-        ray.source = shading.surface.source;
-        self.next_rays.push(ray);
-        self.next_paths.push(Path { throughput, depth, scattered, ..path });
-    }
-
-    /// The mirrored direction, if it is above the geometric surface.
-    fn mirror(&self, shading: &Shading<'_>, wo: Vec3) -> Option<Vec3> {
-        let wi = fresnel::reflect(wo, shading.frame.z).normalize();
-        (shading.normal.dot(wi) > 0.0).then_some(wi)
-    }
-
-    /// Mirrored or refracted, by Fresnel; `choice` in 0..=1.
-    fn through_glass(&self, shading: &Shading<'_>, choice: f32) -> Option<Vec3> {
-        let normal = shading.frame.z;
-        let ior = shading.material.ior;
-        let eta = if shading.is_outside { ior } else { 1.0 / ior };
-        if choice < fresnel::dielectric(shading.wo.dot(normal), eta) {
-            return self.mirror(shading, shading.wo);
-        }
-        let wi = fresnel::refract(shading.wo, normal, eta)?;
-        (shading.normal.dot(wi) < 0.0).then_some(wi)
-    }
-
-    /// A scattered direction, the BRDF times the cosine over its density, and that density.
-    fn scatter(&self, path: Path, shading: &Shading<'_>) -> Option<(Vec3, Rgb, f32)> {
-        let wo = shading.frame.local_from_world(shading.wo);
-        let u = self.first_net(path, dimension::SCATTER);
-        let wi = shading.glossy.sample(wo, u)?;
-        let direction = shading.frame.world_from_local(wi).normalize();
-        let pdf = shading.glossy.pdf(wo, wi);
-        let is_valid = shading.normal.dot(direction) > 0.0 && pdf > 0.0;
-        is_valid.then(|| (direction, shading.glossy.eval(wo, wi) * (wi.z / pdf), pdf))
-    }
 }
 
 impl Block {
@@ -492,52 +329,6 @@ impl Block {
         self.numbers.set(i, &path.numbers);
         set_vec3(&mut self.throughput, i, path.throughput);
         self.paths[i] = path;
-    }
-}
-
-/// Camera rays on their way into a batch.
-struct FirstRays {
-    n: usize,
-    numbers: NumbersBlock,
-    /// The pixels.
-    at: [Lane<f32>; 2],
-    rays: RayBlock,
-}
-
-impl FirstRays {
-    fn new(sampler: Sampler) -> Self {
-        let (numbers, rays) = (NumbersBlock::new(sampler), RayBlock::IDLE);
-        Self { n: 0, numbers, at: [[0.0; BLOCK]; 2], rays }
-    }
-
-    fn push(
-        &mut self,
-        (x, y): (u32, u32),
-        numbers: &SampleNumbers,
-        camera: &Camera,
-        size: Vec2,
-        rays: &mut RayBatch,
-    ) {
-        self.numbers.set(self.n, numbers);
-        (self.at[0][self.n], self.at[1][self.n]) = (x as f32, y as f32);
-        self.n += 1;
-        if self.n == BLOCK {
-            self.flush(camera, size, rays);
-        }
-    }
-
-    fn flush(&mut self, camera: &Camera, size: Vec2, rays: &mut RayBatch) {
-        let (mut at, mut lens) = ([[0.0; BLOCK]; 2], [[0.0; BLOCK]; 2]);
-        self.numbers.pairs(dimension::PIXEL, Some(Net::First), &mut at);
-        for (at, pixel) in at.iter_mut().flatten().zip(self.at.as_flattened()) {
-            *at += pixel;
-        }
-        if camera.aperture_radius > 0.0 {
-            self.numbers.pairs(dimension::LENS, Some(Net::Second), &mut lens);
-        }
-        camera.rays(&at, size, &lens, &mut self.rays);
-        rays.append(&self.rays, self.n);
-        self.n = 0;
     }
 }
 

@@ -5,11 +5,13 @@
 //! finds (see [`Walk`]).
 
 mod build;
+mod packet;
 mod traverse;
 
 use crate::math::Aabb;
 
 pub use build::{Item, Split, build};
+pub use packet::{LANES, Lanes, PacketRays, PacketWalk, Visit};
 pub use traverse::Walk;
 
 /// Eight bytes: an inner node's plane and far child, or a leaf's range of items.

@@ -28,7 +28,7 @@ impl Walk {
     pub fn new(ray: &Ray, bounds: &Aabb) -> Option<Self> {
         let origin = ray.origin.to_array();
         let reciprocal = ray.direction.to_array().map(reciprocal);
-        let pad = (ray.origin.abs().max_element() + bounds.max_abs()) * (16.0 / 16_777_216.0);
+        let pad = padding(ray.origin.abs().max_element(), bounds.max_abs());
         let (mut t_min, mut t_max) = (0.0_f32, ray.t_max);
         for axis in 0..3 {
             let low = bounds.min[axis] - pad;
@@ -41,8 +41,15 @@ impl Walk {
     }
 }
 
+/// By how much planes are moved, from the largest coordinates of an origin and of the tree.
+#[inline(always)]
+pub(super) fn padding(origin: f32, tree: f32) -> f32 {
+    (origin + tree) * (16.0 / 16_777_216.0)
+}
+
 /// A direction's reciprocal, finite even for 0.
-fn reciprocal(d: f32) -> f32 {
+#[inline(always)]
+pub(super) fn reciprocal(d: f32) -> f32 {
     const SMALLEST: f32 = 1e-30;
     if d.abs() < SMALLEST { (1.0 / SMALLEST).copysign(d) } else { 1.0 / d }
 }
