@@ -226,9 +226,13 @@ fn report(folder: &Path, options: &Options, all: &[Measured]) -> Result<(), Fail
             .collect()
     };
     let labels = KINDS.map(|kind| kind.label);
-    let samples = plot::draw(&panels(|p| f64::from(p.samples)), labels, "samples a pixel");
+    let samples = plot::draw(
+        &panels(|p| f64::from(p.samples)),
+        labels,
+        "error in percent against samples a pixel",
+    );
     std::fs::write(folder.join("convergence-samples.svg"), samples)?;
-    let seconds = plot::draw(&panels(|p| p.seconds), labels, "seconds");
+    let seconds = plot::draw(&panels(|p| p.seconds), labels, "error in percent against seconds");
     std::fs::write(folder.join("convergence-seconds.svg"), seconds)?;
     Ok(())
 }

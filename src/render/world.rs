@@ -20,6 +20,10 @@ pub struct World {
     /// For each object, whether any of its materials is glass.
     pub(super) is_clear: Vec<bool>,
     pub(super) has_glass: bool,
+    /// The material slots of all objects: object and slot.
+    pub(super) slots: Vec<(u32, u32)>,
+    /// For each object, where its slots start.
+    pub(super) first_slot: Vec<u32>,
     /// What lights others in "path" beside `[[lights]]`; empty in "direct".
     pub(super) emission: Emission,
 }
@@ -51,11 +55,17 @@ impl World {
         };
         let is_clear: Vec<bool> = job.scene.objects.iter().map(is_glass).collect();
         let has_glass = is_clear.contains(&true);
+        let (mut slots, mut first_slot) = (Vec::new(), Vec::new());
+        for (index, object) in job.scene.objects.iter().enumerate() {
+            first_slot.push(slots.len() as u32);
+            let n_slots = object.materials.len() as u32;
+            slots.extend((0..n_slots).map(|slot| (index as u32, slot)));
+        }
         let emission = match job.settings.integrator {
             IntegratorKind::Direct => Emission::default(),
             IntegratorKind::Path => Emission::new(&job.scene),
         };
-        Ok(Self { job, geometry, is_clear, has_glass, emission })
+        Ok(Self { job, geometry, is_clear, has_glass, slots, first_slot, emission })
     }
 
     /// The material at a hit.
