@@ -1,6 +1,8 @@
 //! A job made ready: its scene with the trees that rays need.
 
-use crate::geometry::{Geometry, Hit, Shape};
+use std::sync::atomic::AtomicBool;
+
+use crate::geometry::{Geometry, Hit, Shape, Stopped};
 use crate::math::RayBatch;
 use crate::render::emission::Emission;
 use crate::render::features::Feature;
@@ -36,10 +38,18 @@ pub struct Pick {
 }
 
 impl World {
-    /// Builds the trees that are missing, on the current pool.
+    /// [`World::build`], to its end.
     pub fn new(job: RenderJob) -> Self {
+        Self::build(job, &AtomicBool::new(false)).expect("nobody stops it")
+    }
+
+    /// Builds the trees that are missing, on the current pool. `stop` is looked at as that goes on.
+    ///
+    /// # Errors
+    /// [`Stopped`]; trees that were finished before are kept with their meshes.
+    pub fn build(job: RenderJob, stop: &AtomicBool) -> Result<Self, Stopped> {
         let instances = job.scene.objects.iter().map(|object| object.instance.clone()).collect();
-        let geometry = Geometry::new(instances, job.settings.accelerator);
+        let geometry = Geometry::build(instances, job.settings.accelerator, stop)?;
         let is_glass = |object: &Object| {
             object.materials.iter().any(|id| job.scene.materials[*id as usize].is_glass())
         };
@@ -55,7 +65,7 @@ impl World {
             IntegratorKind::Direct => Emission::default(),
             IntegratorKind::Path => Emission::new(&job.scene),
         };
-        Self { job, geometry, is_clear, has_glass, slots, first_slot, emission }
+        Ok(Self { job, geometry, is_clear, has_glass, slots, first_slot, emission })
     }
 
     /// The material at a hit.

@@ -1,10 +1,12 @@
 //! The window driven by label and role, without a display.
 
 mod export;
+mod extremes;
 mod layout;
 mod panels;
 pub(in crate::window) mod parameters;
 mod promises;
+mod random_user;
 mod start;
 mod views;
 mod whole;
