@@ -1,6 +1,7 @@
 //! The pictograms of the toolbar, drawn with lines so that they are crisp at any scale and have
 //! the colour of the text beside them. Fonts have no such set.
 
+use crate::math::portable::{cos, sin};
 use egui::{Atom, Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2};
 use std::f32::consts::TAU;
 
@@ -136,7 +137,7 @@ impl Pen<'_> {
     fn arc(&self, [x, y]: [f32; 2], radius: f32, from: f32, to: f32) {
         let points = (0..=16).map(|step| {
             let angle = TAU * (from + (to - from) * step as f32 / 16.0);
-            [x + radius * angle.cos(), y + radius * angle.sin()]
+            [x + radius * cos(angle), y + radius * sin(angle)]
         });
         self.line(&points.collect::<Vec<_>>());
     }
@@ -147,7 +148,7 @@ impl Pen<'_> {
         self.line(&[[x(4.8), 1.8], [x(1.8), 4.8], [x(4.8), 7.8]]);
         let bend = (0..=16).map(|step| {
             let angle = TAU * (-0.25 + 0.5 * step as f32 / 16.0);
-            [x(8.6 + 3.6 * angle.cos()), 8.4 + 3.6 * angle.sin()]
+            [x(8.6 + 3.6 * cos(angle)), 8.4 + 3.6 * sin(angle)]
         });
         let way = std::iter::once([x(1.8), 4.8]).chain(bend).chain([[x(5.0), 12.0]]);
         self.line(&way.collect::<Vec<_>>());

@@ -134,8 +134,9 @@ fn an_edit_that_no_file_could_say_is_refused_and_told() {
     for (label, value) in [("Target X", 2.0), ("Target Y", 5.0), ("Target Z", 3.0)] {
         // The camera has a target of the same name above.
         let boxes = harness.query_all_by_role(Role::SpinButton);
-        let named = boxes.filter(|node| node.accesskit_node().label().as_deref() == Some(label));
-        named.last().expect("the light's target").set_value_accesskit(value);
+        let mut named =
+            boxes.filter(|node| node.accesskit_node().label().as_deref() == Some(label));
+        named.next_back().expect("the light's target").set_value_accesskit(value);
         harness.run_steps(3);
     }
     // The light is at (2, 5, 3): it cannot face itself.
@@ -313,10 +314,10 @@ fn the_menu_shows_every_view_and_marks_the_one_on_show() {
     for view in crate::window::views::View::ALL {
         press(&mut harness, "View");
         let lines = harness.query_all_by_role(Role::Button);
-        let named = lines.filter(|node| {
+        let mut named = lines.filter(|node| {
             node.accesskit_node().label().is_some_and(|label| label.starts_with(view.name()))
         });
-        named.last().expect("a line of the menu").click();
+        named.next_back().expect("a line of the menu").click();
         harness.run_steps(3);
         assert_eq!(harness.state().interface.display.view, view, "another view");
     }
