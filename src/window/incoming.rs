@@ -167,6 +167,7 @@ impl App {
         self.work.set_assets(Arc::new(assets));
         self.document = if self.recovery.is_copy(&source) {
             // No file of the user's holds it.
+            self.recovery.note_restored();
             Document::unsaved(description, empty_scene())
         } else {
             Document::new(description, self.files.scene_path.clone())

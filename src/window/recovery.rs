@@ -52,6 +52,11 @@ impl Recovery {
         matches!(source, Source::File(path) if Some(path) == self.path.as_ref())
     }
 
+    /// The copy is open, and not saved: it goes when that is over.
+    pub(super) fn note_restored(&mut self) {
+        self.written = true;
+    }
+
     /// Removes the copy: everything is saved, or let go on purpose.
     pub(super) fn forget(&mut self) {
         if let Some(path) = self.path.as_ref().filter(|_| self.written) {
@@ -155,8 +160,8 @@ impl App {
         }
         if restore || drop {
             self.recovery.offered = false;
-            // What is restored counts as not saved: the copy goes when that is over.
-            self.recovery.written = true;
+            // One that is restored stays until it is loaded and saved.
+            self.recovery.written = drop;
             if drop {
                 self.recovery.forget();
             }

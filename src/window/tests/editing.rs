@@ -137,6 +137,7 @@ fn an_edit_that_no_file_could_say_is_refused_and_told() {
         let mut named =
             boxes.filter(|node| node.accesskit_node().label().as_deref() == Some(label));
         named.next_back().expect("the light's target").set_value_accesskit(value);
+        drop(named);
         harness.run_steps(3);
     }
     // The light is at (2, 5, 3): it cannot face itself.
@@ -318,6 +319,7 @@ fn the_menu_shows_every_view_and_marks_the_one_on_show() {
             node.accesskit_node().label().is_some_and(|label| label.starts_with(view.name()))
         });
         named.next_back().expect("a line of the menu").click();
+        drop(named);
         harness.run_steps(3);
         assert_eq!(harness.state().interface.display.view, view, "another view");
     }
