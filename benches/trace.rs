@@ -2,20 +2,28 @@
 //!
 //! ```text
 //! cargo bench --bench trace -- MESH.obj [--threads N]
+//! cargo bench --bench trace -- --scaling [--threads N] [--report DIRECTORY]
 //! ```
 //!
-//! One JSON line a measurement. The rays: a pinhole camera of 1024 x 1024 pixels around the mesh's
+//! With `--scaling`: on a knot of a thousand to a million triangles, which the bench makes itself;
+//! `--report` writes `scaling.md` and `scaling.svg`. One JSON line a measurement. The rays: a pinhole camera of 1024 x 1024 pixels around the mesh's
 //! bounds ("primary"); from every hit a ray to a random point of a square light above ("shadow"),
 //! to a point that a block of 4 x 4 pixels shares ("shadow_block"), and in a cosine-weighted random
 //! direction ("bounce"). Everything is computed in f64 and rounded to f32 at the end; random
 //! numbers are hashes of the pixel. Sets keep the order of 16 x 16 tiles of 4 x 4 blocks.
 #![expect(clippy::print_stdout, reason = "a bench prints its figures")]
 
+#[path = "convergence/plot.rs"]
+mod plot;
+#[path = "trace/scaling.rs"]
+mod scaling;
+
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use glam::{DVec3, Vec3};
+use penumbra::geometry::mesh::Mesh;
 use penumbra::geometry::{AcceleratorKind, Geometry, Hit, Instance, Shape, TracedMesh};
 use penumbra::io::obj;
 use penumbra::math::{Aabb, PrimitiveId, Ray, RayBatch, Transform};
@@ -27,29 +35,65 @@ const WIDTH: u32 = 1024;
 const BATCH: usize = 2048;
 const REPETITIONS: usize = 5;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+type Failure = Box<dyn std::error::Error>;
+
+fn main() -> Result<(), Failure> {
     let mut arguments = std::env::args().skip(1).filter(|argument| argument != "--bench");
     let (mut path, mut threads) = (None, vec![1, penumbra::threads::available()]);
+    let (mut is_scaling, mut report) = (false, None);
     while let Some(argument) = arguments.next() {
-        if argument == "--threads" {
-            threads = vec![arguments.next().ok_or("--threads needs a number")?.parse()?];
-        } else {
-            path = Some(argument);
+        match argument.as_str() {
+            "--threads" => {
+                threads = vec![arguments.next().ok_or("--threads needs a number")?.parse()?];
+            }
+            "--scaling" => is_scaling = true,
+            "--report" => {
+                report = Some(arguments.next().ok_or("--report needs a directory")?);
+            }
+            _ => path = Some(argument),
         }
+    }
+    threads.dedup();
+    if is_scaling {
+        let mut rows = Vec::new();
+        for n_triangles in [1_000, 4_000, 16_000, 64_000, 256_000, 1_000_000] {
+            rows.extend(measure("knot", scaling::knot(n_triangles), &threads)?);
+        }
+        if let Some(directory) = report {
+            scaling::write(&rows, std::path::Path::new(&directory))?;
+        }
+        return Ok(());
     }
     let Some(path) = path else {
         println!("{{\"note\":\"give a mesh: cargo bench --bench trace -- MESH.obj\"}}");
         return Ok(());
     };
-    threads.dedup();
     let stem = std::path::Path::new(&path).file_stem().ok_or("no file name")?;
     let (mesh, _) =
         obj::load_mesh(&std::fs::read(&path)?, NormalsKind::Flat, 0.0, &AtomicBool::new(false))?;
+    measure(&stem.to_string_lossy(), mesh, &threads)?;
+    Ok(())
+}
+
+/// One measurement, of the best repetition.
+struct Row {
+    n_triangles: usize,
+    n_threads: usize,
+    set: &'static str,
+    accelerator: AcceleratorKind,
+    mrays_per_s: f64,
+    build_ms: f64,
+    n_bytes: usize,
+}
+
+/// Measures all sets of rays on all accelerators but brute force, and prints a line for each.
+fn measure(name: &str, mesh: Mesh, threads: &[usize]) -> Result<Vec<Row>, Failure> {
     let bounds = Aabb::of(mesh.positions.iter().copied());
     let n_triangles = mesh.triangles.len();
     let traced = Arc::new(TracedMesh::new(mesh));
     let sets = ray_sets(&traced, &bounds)?;
-    for n_threads in threads {
+    let mut rows = Vec::new();
+    for n_threads in threads.iter().copied() {
         let pool = penumbra::threads::pool("trace", n_threads)?;
         for kind in AcceleratorKind::ALL {
             if kind == AcceleratorKind::BruteForce {
@@ -57,24 +101,34 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             }
             let build_ms = pool.install(|| build_ms(&traced, kind));
             let geometry = pool.install(|| geometry(&traced, kind));
+            let n_bytes = geometry.statistics().n_bytes;
             for set in &sets {
                 let best = pool.install(|| set.measure(&geometry));
-                let (rays, name) = (set.n_rays, set.name);
+                let (rays, set) = (set.n_rays, set.name);
+                let mrays_per_s = rays as f64 / best.wall_secs * 1e-6;
                 println!(
-                    "{{\"peer\":\"penumbra\",\"mesh\":{:?},\"tris\":{n_triangles},\"threads\":{n_threads},\
-                     \"kind\":\"{name}\",\"mode\":\"{}\",\"rays\":{rays},\"mrays_per_s\":{:.3},\
-                     \"mrays_cpu\":{:.3},\"build_ms\":{build_ms:.2},\"hits\":{},\"checksum\":{:.6}}}",
-                    stem.to_string_lossy(),
+                    "{{\"peer\":\"penumbra\",\"mesh\":{name:?},\"tris\":{n_triangles},\"threads\":{n_threads},\
+                     \"kind\":\"{set}\",\"mode\":\"{}\",\"rays\":{rays},\"mrays_per_s\":{mrays_per_s:.3},\
+                     \"mrays_cpu\":{:.3},\"build_ms\":{build_ms:.2},\"tree_bytes\":{n_bytes},\
+                     \"hits\":{},\"checksum\":{:.6}}}",
                     kind.name(),
-                    rays as f64 / best.wall_secs * 1e-6,
                     rays as f64 / best.cpu_secs * 1e-6,
                     best.n_hits,
                     best.checksum,
                 );
+                rows.push(Row {
+                    n_triangles,
+                    n_threads,
+                    set,
+                    accelerator: kind,
+                    mrays_per_s,
+                    build_ms,
+                    n_bytes,
+                });
             }
         }
     }
-    Ok(())
+    Ok(rows)
 }
 
 fn geometry(mesh: &Arc<TracedMesh>, kind: AcceleratorKind) -> Geometry {

@@ -36,6 +36,25 @@ pub fn linear_from_srgb(x: f32) -> f32 {
 mod tests {
     use super::*;
 
+    /// Bytes 10, 11, 64, 128 and 200, by the standard's formula in double precision; the luminances of
+    /// the primaries add up to that of white.
+    #[test]
+    fn known_values_of_the_standard() {
+        let known = [
+            (10.0, 0.003_035_27),
+            (11.0, 0.003_346_54),
+            (64.0, 0.051_269_46),
+            (128.0, 0.215_860_5),
+            (200.0, 0.577_580_4),
+        ];
+        for (byte, expected) in known {
+            let found = linear_from_srgb(byte / 255.0);
+            assert!((found / expected - 1.0).abs() < 1e-5, "{byte} is {found}, not {expected}");
+        }
+        let primaries = [Rgb::X, Rgb::Y, Rgb::Z].map(luminance);
+        assert_eq!(primaries, [0.2126, 0.7152, 0.0722], "Rec. 709");
+    }
+
     #[test]
     fn the_transfer_function_and_its_inverse_cancel() {
         for i in 0..=1000 {

@@ -11,7 +11,7 @@ use crate::io::files::{FileError, read_file};
 use crate::io::folder::{FileRecord, Folder, LARGEST_ASSET};
 use crate::io::obj::ObjError;
 use crate::io::progress::Step;
-use crate::io::scene_file::{self, Override, OverrideError, SceneFileError, Section};
+use crate::io::scene_file::{self, LARGEST_FILE, Override, OverrideError, SceneFileError, Section};
 use crate::io::snapshot::{self, RenderRecord, SnapshotError};
 use crate::io::{crash, gallery, printable_path};
 use crate::scene::assets::{Assets, MeshAsset, MeshKey};
@@ -224,9 +224,10 @@ impl Opened {
             Source::File(path) => path,
         };
         let name = printable_path(path);
-        let bytes = read_file(path, LARGEST_ASSET)?;
         let has_ending =
             |ending| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending));
+        let is_scene = has_ending("toml");
+        let bytes = read_file(path, if is_scene { LARGEST_FILE } else { LARGEST_ASSET })?;
         if bytes.starts_with(b"\x89PNG") || has_ending("png") {
             let snapshot = snapshot::read(&bytes, path)
                 .map_err(|error| LoadError::Snapshot { name: name.clone(), error })?;

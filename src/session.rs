@@ -243,10 +243,12 @@ impl Session {
         self.shared.changed.notify_one();
     }
 
-    /// Gives up what is being rendered, its preview too: another scene is about to be submitted, and
-    /// nobody waits for a picture of this one any more.
+    /// Gives up what is being built or rendered, its preview too: nobody waits for a picture of this
+    /// scene any more. Whatever is submitted next is new.
     pub fn abandon(&self) {
-        let orders = self.shared.orders();
+        let mut orders = self.shared.orders();
+        orders.submitted = None;
+        orders.mailbox = None;
         self.shared.stop_preview.store(true, Ordering::Relaxed);
         self.shared.stop_refining.store(true, Ordering::Relaxed);
         drop(orders);

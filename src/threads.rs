@@ -20,7 +20,7 @@ pub fn spawn<T: Send + 'static>(
 /// # Errors
 /// When the system has no thread left.
 pub fn pool(name: &'static str, n_threads: usize) -> io::Result<rayon::ThreadPool> {
-    builder(name, n_threads).build().map_err(io::Error::other)
+    started(n_threads, builder(name, n_threads))
 }
 
 /// The same, at lower priority where the system has one, so that the desktop stays usable.
@@ -28,13 +28,21 @@ pub fn pool(name: &'static str, n_threads: usize) -> io::Result<rayon::ThreadPoo
 /// # Errors
 /// When the system has no thread left.
 pub fn background_pool(name: &'static str, n_threads: usize) -> io::Result<rayon::ThreadPool> {
-    builder(name, n_threads).start_handler(|_| lower_priority()).build().map_err(io::Error::other)
+    started(n_threads, builder(name, n_threads).start_handler(|_| lower_priority()))
 }
 
 fn builder(name: &'static str, n_threads: usize) -> rayon::ThreadPoolBuilder {
     rayon::ThreadPoolBuilder::new()
         .num_threads(n_threads.max(1))
         .thread_name(move |index| format!("{name}-{index}"))
+}
+
+fn started(n_threads: usize, builder: rayon::ThreadPoolBuilder) -> io::Result<rayon::ThreadPool> {
+    builder.build().map_err(|error| {
+        io::Error::other(format!(
+            "cannot start {n_threads} threads: {error}; give a smaller number"
+        ))
+    })
 }
 
 fn lower_priority() {

@@ -278,6 +278,72 @@ mod tests {
         }
     }
 
+    /// Encoded values of seven colours, computed in double precision from the published matrices and
+    /// curves.
+    #[test]
+    fn operators_give_the_values_of_their_sources() {
+        const COLORS: [[f32; 3]; 7] = [
+            [0.18, 0.18, 0.18],
+            [0.8, 0.2, 0.05],
+            [0.02, 0.3, 1.5],
+            [4.0, 6.0, 1.0],
+            [0.002, 0.004, 0.003],
+            [0.1, 1.2, 0.6],
+            [9.0, 0.5, 3.0],
+        ];
+        let expected = [
+            (ToneOperator::Linear, LINEAR),
+            (ToneOperator::Reinhard, REINHARD),
+            (ToneOperator::Aces, ACES),
+            (ToneOperator::Agx, AGX),
+        ];
+        for (operator, values) in expected {
+            for (color, value) in COLORS.iter().zip(values) {
+                let found = mapped(*color, operator);
+                let is_near = |(a, b): (&u8, &f32)| (f32::from(*a) - b).abs() <= 0.55;
+                let are_near = found.iter().zip(&value).all(is_near);
+                assert!(are_near, "{operator:?} of {color:?}: {found:?}, not {value:?}");
+            }
+        }
+    }
+
+    const LINEAR: [[f32; 3]; 7] = [
+        [117.65, 117.65, 117.65],
+        [231.11, 123.55, 63.19],
+        [38.68, 148.88, 255.00],
+        [255.00, 255.00, 255.00],
+        [6.59, 12.93, 9.88],
+        [89.04, 255.00, 203.42],
+        [255.00, 187.52, 255.00],
+    ];
+    const REINHARD: [[f32; 3]; 7] = [
+        [108.87, 108.87, 108.87],
+        [177.86, 113.49, 61.64],
+        [38.25, 132.01, 203.42],
+        [231.11, 238.26, 187.52],
+        [6.58, 12.89, 9.85],
+        [85.03, 194.96, 164.75],
+        [243.45, 156.19, 224.61],
+    ];
+    const ACES: [[f32; 3]; 7] = [
+        [91.41, 91.41, 91.41],
+        [198.45, 103.68, 45.16],
+        [39.69, 128.51, 222.71],
+        [246.13, 248.75, 226.28],
+        [0.00, 0.30, 0.00],
+        [133.22, 215.03, 181.57],
+        [255.00, 209.86, 240.90],
+    ];
+    const AGX: [[f32; 3]; 7] = [
+        [127.64, 127.63, 127.63],
+        [201.08, 137.39, 98.30],
+        [108.73, 167.70, 226.48],
+        [240.42, 243.77, 219.03],
+        [0.96, 3.44, 2.17],
+        [154.80, 208.10, 183.63],
+        [255.00, 216.58, 234.88],
+    ];
+
     #[test]
     fn bytes_are_the_same_on_every_processor() {
         let light = |i: usize| 1e-5 * 1.1_f32.powi(i as i32) - 1e-4;
@@ -301,5 +367,7 @@ mod tests {
         let mut out = [[0; 3]];
         map_to_srgb8(&[[0.25; 3]], 1.0, ToneOperator::Linear, &mut out);
         assert_eq!(out[0], mapped([0.5; 3], ToneOperator::Linear), "0.25 at +1 EV");
+        map_to_srgb8(&[[0.25; 3]], -3.0, ToneOperator::Linear, &mut out);
+        assert_eq!(out[0], mapped([0.031_25; 3], ToneOperator::Linear), "0.25 at -3 EV");
     }
 }

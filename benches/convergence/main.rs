@@ -1,14 +1,16 @@
 //! Error against samples and against seconds, for the scenes of the gallery and both samplers.
 //!
 //! ```text
-//! cargo bench --bench convergence [-- SCENE ...] [--width W] [--samples MAX] [--report FOLDER]
+//! cargo bench --bench convergence [-- SCENE ...] [--width W] [--tiles N] [--samples MAX]
+//!                                  [--report FOLDER]
 //! ```
 //!
 //! One JSON line a point. The error is the root mean square of the difference of two pictures that
 //! differ in their seed only, over the square root of two: that of either, where the renderer has no
 //! bias (which the golden pictures of the tests see to). Beside it the noise figure that the renderer
 //! itself gives, and the seconds of one picture. The third kind, "adaptive", is "sobol" with samples
-//! that go where the error is. `--report` writes `convergence.md`, with the table, and the plots
+//! that go where the error is. With `--tiles`, N tiles of 16 x 16 pixels, spread over the picture,
+//! stand for the whole of it. `--report` writes `convergence.md`, with the table, and the plots
 //! `convergence-samples.svg` and `convergence-seconds.svg`.
 #![expect(clippy::print_stdout, reason = "a bench prints its figures")]
 
@@ -35,6 +37,7 @@ type Failure = Box<dyn std::error::Error + Send + Sync>;
 struct Options {
     scenes: Vec<String>,
     width: u32,
+    tiles: Option<u32>,
     samples: u32,
     report: Option<PathBuf>,
 }
@@ -88,12 +91,14 @@ fn main() -> Result<(), Failure> {
 }
 
 fn options() -> Result<Options, Failure> {
-    let mut options = Options { scenes: Vec::new(), width: 48, samples: 4096, report: None };
+    let mut options =
+        Options { scenes: Vec::new(), width: 48, tiles: None, samples: 4096, report: None };
     let mut arguments = std::env::args().skip(1).filter(|argument| argument != "--bench");
     while let Some(argument) = arguments.next() {
         let mut value = || arguments.next().ok_or("an option lacks its value");
         match argument.as_str() {
             "--width" => options.width = value()?.parse()?,
+            "--tiles" => options.tiles = Some(value()?.parse()?),
             "--samples" => options.samples = value()?.parse()?,
             "--report" => options.report = Some(value()?.into()),
             _ => options.scenes.push(argument),
@@ -105,21 +110,29 @@ fn options() -> Result<Options, Failure> {
 fn measure(name: &'static str, loaded: &Loaded, options: &Options) -> Result<Measured, Failure> {
     let mut curves = [const { Vec::new() }; 3];
     for (kind, curve) in KINDS.iter().zip(&mut curves) {
-        let mut pair = Vec::new();
-        for seed in [1, 2] {
-            let world = world(loaded, options.width, *kind, seed)?;
-            pair.push((Film::new(world.job.width, world.job.height)?, world));
+        let mut pairs = Vec::new();
+        for tile in 0..options.tiles.unwrap_or(1) {
+            let mut pair = Vec::new();
+            for seed in [1, 2] {
+                let mut job = job(loaded, options.width, *kind, seed)?;
+                if options.tiles.is_some() {
+                    crop(&mut job, tile);
+                }
+                pair.push((Film::new(job.width, job.height)?, World::new(job)));
+            }
+            pairs.push(pair);
         }
         let (mut seconds, mut samples) = (0.0, 4);
         while samples <= options.samples {
             let start = Instant::now();
-            for (film, world) in &mut pair {
+            for (film, world) in pairs.iter_mut().flatten() {
                 let n = samples - film.n_samples();
                 let never = AtomicBool::new(false);
                 render_pass(world, film, n, &never).map_err(|_| "stopped by nobody")?;
             }
             seconds += 0.5 * start.elapsed().as_secs_f64();
-            let point = point(&pair[0].0, &pair[1].0, seconds);
+            let films = pairs.iter().map(|pair| (&pair[0].0, &pair[1].0));
+            let point = point(films, samples, seconds);
             println!(
                 "{{\"scene\":\"{name}\",\"sampler\":\"{}\",\"samples\":{samples},\"rmse_percent\":{:.4},\
                  \"noise_percent\":{:.4},\"seconds\":{seconds:.4}}}",
@@ -132,33 +145,57 @@ fn measure(name: &'static str, loaded: &Loaded, options: &Options) -> Result<Mea
     Ok(Measured { name, curves })
 }
 
-fn point(a: &Film, b: &Film, seconds: f64) -> Point {
-    let pairs: Vec<(f64, f64)> = luminances(a).into_iter().zip(luminances(b)).collect();
-    let n = pairs.len() as f64;
-    let variance = pairs.iter().map(|(a, b)| 0.5 * (a - b).powi(2)).sum::<f64>() / n;
-    let mean = pairs.iter().map(|(a, b)| 0.5 * (a + b)).sum::<f64>() / n;
-    let figure = |film: &Film| film.noise_percent().unwrap_or(f64::NAN).powi(2);
-    Point {
-        samples: a.n_samples(),
-        percent: 100.0 * variance.sqrt() / mean,
-        figure: (0.5 * (figure(a) + figure(b))).sqrt(),
-        seconds,
+/// Of pairs of films that differ in their seed only.
+fn point<'a>(
+    pairs: impl Iterator<Item = (&'a Film, &'a Film)>,
+    samples: u32,
+    seconds: f64,
+) -> Point {
+    let (mut squared_error, mut squared_figure, mut light, mut n) = (0.0, 0.0, 0.0, 0.0);
+    for (a, b) in pairs {
+        let both = luminances(a).into_iter().zip(luminances(b));
+        squared_error += both.map(|(a, b)| 0.5 * (a - b).powi(2)).sum::<f64>();
+        for film in [a, b] {
+            let values = luminances(film);
+            let (sum, n_pixels) = (values.iter().sum::<f64>(), values.len() as f64);
+            let error = 0.01 * film.noise_percent().unwrap_or(0.0) * sum / n_pixels;
+            squared_figure += 0.5 * error.powi(2) * n_pixels;
+            light += 0.5 * sum;
+            n += 0.5 * n_pixels;
+        }
     }
+    let percent = |squares: f64| 100.0 * (squares / n).sqrt() * n / light;
+    Point { samples, percent: percent(squared_error), figure: percent(squared_figure), seconds }
 }
 
-fn world(loaded: &Loaded, width: u32, kind: Kind, seed: u32) -> Result<World, Failure> {
+fn job(loaded: &Loaded, width: u32, kind: Kind, seed: u32) -> Result<RenderJob, Failure> {
     let mut description = loaded.description.clone();
     let render = &mut description.render;
     render.height = (width * render.height / render.width).max(1);
     (render.width, render.sampler, render.adaptive) = (width, kind.sampler, kind.adaptive);
     render.seed = seed;
-    let job = RenderJob {
+    Ok(RenderJob {
         scene: Arc::new(resolve(&description, &loaded.assets)?),
         width,
         height: description.render.height,
         settings: RenderSettings::new(&description.render, AcceleratorKind::default()),
-    };
-    Ok(World::new(job))
+    })
+}
+
+/// One tile of the picture, at a place that its number gives: all of them together cover it evenly.
+fn crop(job: &mut RenderJob, tile: u32) {
+    const SIDE: u32 = 16;
+    // M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018.
+    let place = |step: f64| (0.5 + step * f64::from(tile)).fract() as f32;
+    let (width, height) = (job.width as f32, job.height as f32);
+    let x = (2.0 * place(0.754_877_666_2) - 1.0) * (width / height);
+    let y = 1.0 - 2.0 * place(0.569_840_291_0);
+    let mut scene = (*job.scene).clone();
+    let camera = &mut scene.camera;
+    let aside = camera.tan_half_fov * (x * camera.right + y * camera.up);
+    camera.forward += aside;
+    camera.tan_half_fov *= SIDE as f32 / height;
+    (job.scene, job.width, job.height) = (Arc::new(scene), SIDE, SIDE);
 }
 
 fn luminances(film: &Film) -> Vec<f64> {
@@ -185,7 +222,8 @@ fn report(folder: &Path, options: &Options, all: &[Measured]) -> Result<(), Fail
          most that the renderer's own noise figure says, over the truth, which two pictures of so few pixels \
          tell no better than to a tenth or two.\n\
          In so small a picture a pixel covers a whole edge of a shadow or a circle of confusion; in one of \
-         full size it does not, and Sobol points gain more.\n\n\
+         full size it does not, and Sobol points gain more: see \
+         [what bounds the slope](correctness.md#how-fast-the-error-falls).\n\n\
          ![Error against samples](convergence-samples.svg)\n\n\
          ![Error against seconds](convergence-seconds.svg)\n\n| scene | sampler |",
         options.width, options.width, options.samples
@@ -226,9 +264,13 @@ fn report(folder: &Path, options: &Options, all: &[Measured]) -> Result<(), Fail
             .collect()
     };
     let labels = KINDS.map(|kind| kind.label);
-    let samples = plot::draw(&panels(|p| f64::from(p.samples)), labels, "samples a pixel");
+    let samples = plot::draw(
+        &panels(|p| f64::from(p.samples)),
+        labels,
+        "error in percent against samples a pixel",
+    );
     std::fs::write(folder.join("convergence-samples.svg"), samples)?;
-    let seconds = plot::draw(&panels(|p| p.seconds), labels, "seconds");
+    let seconds = plot::draw(&panels(|p| p.seconds), labels, "error in percent against seconds");
     std::fs::write(folder.join("convergence-seconds.svg"), seconds)?;
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-/// One plot of three curves of (x, percent).
+/// One plot of three curves of (x, y).
 pub(crate) struct Panel {
     pub(crate) title: &'static str,
     pub(crate) curves: [Vec<[f64; 2]>; 3],
@@ -16,7 +16,7 @@ const MARGINS: [f64; 4] = [42.0, 26.0, 10.0, 34.0];
 const COLORS: [&str; 3] = ["#b0413e", "#2f6690", "#e0a030"];
 
 /// Writes the SVG; all panels have their own ranges.
-pub(crate) fn draw(panels: &[Panel], labels: [&str; 3], x_title: &str) -> String {
+pub(crate) fn draw(panels: &[Panel], labels: [&str; 3], caption: &str) -> String {
     let rows = panels.len().div_ceil(COLUMNS);
     let (width, height) = (WIDTH * COLUMNS as f64, HEIGHT * rows as f64 + 30.0);
     let mut svg = format!(
@@ -33,11 +33,8 @@ pub(crate) fn draw(panels: &[Panel], labels: [&str; 3], x_title: &str) -> String
             x + 30.0
         );
     }
-    let _ = writeln!(
-        svg,
-        "<text x=\"{}\" y=\"19\" text-anchor=\"end\">error in percent against {x_title}</text>",
-        width - 12.0
-    );
+    let _ =
+        writeln!(svg, "<text x=\"{}\" y=\"19\" text-anchor=\"end\">{caption}</text>", width - 12.0);
     for (index, panel) in panels.iter().enumerate() {
         let x = WIDTH * (index % COLUMNS) as f64;
         let y = HEIGHT * (index / COLUMNS) as f64 + 30.0;

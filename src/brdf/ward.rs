@@ -49,7 +49,8 @@ impl Ward {
             WardForm::Bounded => {
                 let z2 = half.z * half.z;
                 let exponent = -self.slope_squared(half) / z2;
-                elementary::exp(exponent) * half.length_squared() / (PI * area * (z2 * z2))
+                // Divided twice: the fourth power of a grazing half vector leaves the range of f32.
+                elementary::exp(exponent) * (half.length_squared() / z2) / (PI * area * z2)
             }
             WardForm::Original | WardForm::Duer => {
                 let cosines = wo.z * wi.z;

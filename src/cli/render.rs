@@ -9,9 +9,9 @@ use crate::cli::progress::Progress;
 use crate::cli::{Failure, RenderArguments, print_json, warn};
 use crate::geometry::AcceleratorKind;
 use crate::io::output::{OutputFormat, check_writable, replace_file};
-use crate::io::printable_path;
 use crate::io::scene_file::Override;
 use crate::io::snapshot;
+use crate::io::{crash, printable_path};
 use crate::loader::{LoadError, Loaded, Source, load};
 use crate::render::{RenderJob, RenderSettings, World};
 use crate::scene::resolve;
@@ -32,6 +32,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     check_writable(output)?;
     let loaded = open(&arguments.file, &overrides(arguments))?;
     warn(&loaded.report, arguments.quiet);
+    crash::rehearse();
     let samples = loaded.description.render.samples;
     let start = Instant::now();
     let n_threads = arguments.threads.map_or_else(threads::available, |n| n as usize);

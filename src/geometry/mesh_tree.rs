@@ -1,7 +1,8 @@
 //! A mesh made ready for rays: its triangles in the order of an accelerator's leaves.
 
 use std::ops::Range;
-use std::sync::OnceLock;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
 use glam::{DVec3, Vec3};
@@ -13,11 +14,11 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::nearest::{Nearest, Search};
 use crate::geometry::triangle::{ShearedRay, ShearedRays};
 use crate::geometry::wide_bvh::WideBvh;
-use crate::geometry::{AcceleratorKind, TraversalCost};
+use crate::geometry::{AcceleratorKind, Stopped, TraversalCost};
 use crate::math::vectorized::vectorized;
 use crate::math::{Aabb, PrimitiveId, Ray, RayBatch};
 
-/// A mesh with the trees that have been asked for; each is built once, on first use.
+/// A mesh with the trees that have been asked for; each is built once.
 #[derive(Debug)]
 pub struct TracedMesh {
     /// The arrays.
@@ -25,18 +26,21 @@ pub struct TracedMesh {
     /// Around every triangle.
     pub bounds: Aabb,
     trees: [OnceLock<MeshTree>; AcceleratorKind::ALL.len()],
+    /// Held by whoever builds; others wait for the same tree.
+    builder: Mutex<()>,
 }
 
 impl TracedMesh {
     /// Takes a mesh; builds nothing yet.
     pub fn new(mesh: Mesh) -> Self {
         let bounds = mesh.bounds();
-        Self { mesh, bounds, trees: Default::default() }
+        Self { mesh, bounds, trees: Default::default(), builder: Mutex::new(()) }
     }
 
     /// Seconds that a build of that kind takes now, whether one is there or not: for measurements.
     pub fn time_build(&self, kind: AcceleratorKind) -> f64 {
-        MeshTree::build(&self.mesh, kind).build_secs
+        let never = AtomicBool::new(false);
+        MeshTree::build(&self.mesh, kind, &never).map_or(f64::NAN, |tree| tree.build_secs)
     }
 
     /// Whether the tree of that kind is built.
@@ -44,9 +48,22 @@ impl TracedMesh {
         self.trees[kind as usize].get().is_some()
     }
 
-    /// The tree of that kind, built now if it is the first time it is asked for.
+    /// Builds the tree of that kind, unless it is there. `stop` is looked at as the build goes on.
+    ///
+    /// # Errors
+    /// [`Stopped`]; there is no such tree then.
+    pub fn build_tree(&self, kind: AcceleratorKind, stop: &AtomicBool) -> Result<(), Stopped> {
+        let _alone = self.builder.lock().unwrap_or_else(PoisonError::into_inner);
+        if !self.has_tree(kind) {
+            let tree = MeshTree::build(&self.mesh, kind, stop)?;
+            self.trees[kind as usize].get_or_init(|| tree);
+        }
+        Ok(())
+    }
+
+    /// The tree of that kind, which has been built.
     pub fn tree(&self, kind: AcceleratorKind) -> &MeshTree {
-        self.trees[kind as usize].get_or_init(|| MeshTree::build(&self.mesh, kind))
+        self.trees[kind as usize].get().expect("a geometry builds its trees")
     }
 }
 
@@ -72,25 +89,25 @@ struct Triangle {
 }
 
 impl MeshTree {
-    fn build(mesh: &Mesh, kind: AcceleratorKind) -> Self {
+    fn build(mesh: &Mesh, kind: AcceleratorKind, stop: &AtomicBool) -> Result<Self, Stopped> {
         let start = Instant::now();
         let triangle = |id: u32| Triangle { corners: mesh.corners(id), id };
         let kd_tree = |split| {
-            let tree = build_kd_tree(mesh, split);
+            let tree = build_kd_tree(mesh, split, stop)?;
             let triangles = tree.items.iter().map(|id| triangle(*id)).collect();
-            Structure::KdTree(tree, triangles)
+            Ok(Structure::KdTree(tree, triangles))
         };
         let structure = match kind {
             // Nothing to divide.
             _ if mesh.triangles.is_empty() => Structure::List(Vec::new()),
-            AcceleratorKind::WideBvh => Structure::WideBvh(WideBvh::build(mesh)),
-            AcceleratorKind::KdTree => kd_tree(Split::SurfaceArea),
-            AcceleratorKind::KdMidpoint => kd_tree(Split::Midpoint),
+            AcceleratorKind::WideBvh => Structure::WideBvh(WideBvh::build(mesh, stop)?),
+            AcceleratorKind::KdTree => kd_tree(Split::SurfaceArea)?,
+            AcceleratorKind::KdMidpoint => kd_tree(Split::Midpoint)?,
             AcceleratorKind::BruteForce => {
                 Structure::List((0..mesh.triangles.len() as u32).map(triangle).collect())
             }
         };
-        Self { structure, build_secs: start.elapsed().as_secs_f64() }
+        Ok(Self { structure, build_secs: start.elapsed().as_secs_f64() })
     }
 
     /// Takes the hits of a ray in object space into a search.
@@ -312,10 +329,11 @@ vectorized! {
     }
 }
 
-fn build_kd_tree(mesh: &Mesh, split: Split) -> KdTree {
+fn build_kd_tree(mesh: &Mesh, split: Split, stop: &AtomicBool) -> Result<KdTree, Stopped> {
     let n_triangles = mesh.triangles.len() as u32;
     let items = (0..n_triangles).map(|id| Item { id, bounds: Aabb::of(mesh.corners(id)) });
-    kd_tree::build(items.collect(), split, &|id, cell| clipped_bounds(mesh.corners(id), &cell))
+    let clip = |id: u32, cell: Aabb| clipped_bounds(mesh.corners(id), &cell);
+    kd_tree::build(items.collect(), split, &clip, stop)
 }
 
 /// Bounds of the part of a triangle inside a box, rounded outwards.

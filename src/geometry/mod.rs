@@ -21,6 +21,8 @@ mod surface;
 mod triangle;
 mod wide_bvh;
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use crate::color::Rgb;
 use crate::geometry::kd_tree::{Item, KdTree, Split, Walk};
 use crate::geometry::nearest::{Nearest, Search};
@@ -79,6 +81,20 @@ impl AcceleratorKind {
     }
 }
 
+/// Something was told to stop, and left nothing half done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stopped;
+
+impl Stopped {
+    /// An error once `stop` is set.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub fn check(stop: &AtomicBool) -> Result<(), Self> {
+        if stop.load(Ordering::Relaxed) { Err(Self) } else { Ok(()) }
+    }
+}
+
 /// Size and cost of the trees behind a geometry.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TreeStatistics {
@@ -102,13 +118,27 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// Builds whatever trees are missing. `instances` are in the scene's order, which numbers them.
+    /// [`Geometry::build`], to its end.
     pub fn new(instances: Vec<Instance>, kind: AcceleratorKind) -> Self {
+        let never = AtomicBool::new(false);
+        Self::build(instances, kind, &never).expect("nobody stops it")
+    }
+
+    /// Builds whatever trees are missing. `instances` are in the scene's order, which numbers them.
+    /// `stop` is looked at before every cut of more than a few thousand triangles.
+    ///
+    /// # Errors
+    /// [`Stopped`]; trees that were finished before are kept with their meshes.
+    pub fn build(
+        instances: Vec<Instance>,
+        kind: AcceleratorKind,
+        stop: &AtomicBool,
+    ) -> Result<Self, Stopped> {
         /// Fewer objects are tested one by one, each by all rays of a batch that touch its box.
         const TREE_LIMIT: usize = 48;
         for instance in &instances {
             if let Shape::Mesh(mesh) = instance.shape() {
-                mesh.tree(kind);
+                mesh.build_tree(kind, stop)?;
             }
         }
         let bounded = |id: &u32| instances[*id as usize].bounds().is_some();
@@ -123,16 +153,17 @@ impl Geometry {
             Some(split) if bounded.len() > TREE_LIMIT => {
                 let item = |id: u32| Some(Item { id, bounds: instances[id as usize].reach()? });
                 let items = bounded.into_iter().filter_map(item).collect();
-                Some(kd_tree::build(items, split, &|id, cell: Aabb| {
+                let clip = |id: u32, cell: Aabb| {
                     instances[id as usize].reach().unwrap_or(cell).intersection(cell)
-                }))
+                };
+                Some(kd_tree::build(items, split, &clip, stop)?)
             }
             _ => {
                 listed.extend(bounded);
                 None
             }
         };
-        Self { instances, kind, tree, listed }
+        Ok(Self { instances, kind, tree, listed })
     }
 
     /// The objects, in the scene's order.

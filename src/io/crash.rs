@@ -36,7 +36,7 @@ struct State {
 pub fn report_to(folder: Option<PathBuf>) {
     state().folder = folder;
     std::panic::set_hook(Box::new(|panic| {
-        if IS_CONTAINED.get() {
+        if is_contained() {
             return;
         }
         let line = match write_report(panic) {
@@ -58,9 +58,21 @@ pub fn contain<T>(work: impl FnOnce() -> T) -> Option<T> {
     result
 }
 
+/// Whether this thread runs a foreign decoder now, whose panic is no mistake.
+pub fn is_contained() -> bool {
+    IS_CONTAINED.get()
+}
+
 /// The text of the scene that is worked on from now on.
 pub fn note_scene(text: impl Into<Arc<str>>) {
     state().scene = Some(text.into());
+}
+
+/// Makes a mistake on purpose where `PENUMBRA_MISTAKE` is set, to see what is told of it; never in a
+/// program that was built to be used.
+pub fn rehearse() {
+    let is_asked = cfg!(debug_assertions) && std::env::var_os("PENUMBRA_MISTAKE").is_some();
+    assert!(!is_asked, "a mistake on purpose");
 }
 
 /// Where this run's newest report is.

@@ -1,14 +1,23 @@
 //! Pictures to disk: whole or not at all.
 
-use std::fs::File;
+use std::ffi::OsStr;
+use std::fs::{DirEntry, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use image::{ExtendedColorType, ImageEncoder};
 use serde::{Deserialize, Serialize};
 
 use crate::color::Picture;
 use crate::io::printable_path;
+
+/// Begins the names of files that are being written; then come [`N_RANDOM`] letters and digits.
+const TEMPORARY: &str = ".penumbra-";
+const N_RANDOM: usize = 6;
+/// A file of such a name that nobody holds and that has not changed for so long was left behind by a
+/// program that was killed.
+const LEFT_BEHIND: Duration = Duration::from_secs(60 * 60);
 
 /// The format of a picture file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -114,15 +123,16 @@ pub fn encode_hdr(picture: &Picture) -> Result<Vec<u8>, image::ImageError> {
 }
 
 /// Replaces a file by these bytes: temporary file beside it, synced, renamed. Until then the old
-/// file is as it was.
+/// file is as it was. Where the name is a link, the file behind it is replaced.
 ///
 /// # Errors
 /// When the folder is not there or not writable, or the disk is full.
 pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    write_temporary(path, bytes)?
-        .persist(path)
+    let place = behind_links(path);
+    write_temporary(&place, bytes)?
+        .persist(&place)
         .map_err(|error| WriteError::new(path, error.error))?;
-    sync_folder(path);
+    sync_folder(&place);
     Ok(())
 }
 
@@ -147,18 +157,20 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     if is_folder {
         return Err(WriteError::new(path, "this is the name of a folder"));
     }
-    let folder = folder_of(path);
+    let place = behind_links(path);
+    let folder = folder_of(&place);
     if !folder.exists() {
         let reason = format!("there is no folder {}; make it first", printable_path(folder));
         return Err(WriteError::new(path, reason));
     }
-    let file = write_temporary(path, &[])?;
+    let file = write_temporary(&place, &[])?;
     file.close().map_err(|error| WriteError::new(path, error))
 }
 
 fn write_temporary(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile, WriteError> {
+    remove_left_behind(folder_of(path));
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".penumbra-");
+    builder.prefix(TEMPORARY).rand_bytes(N_RANDOM);
     #[cfg(unix)]
     {
         // As any program would create it; the process's umask takes its share.
@@ -168,6 +180,8 @@ fn write_temporary(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile,
     let file = builder
         .tempfile_in(folder_of(path))
         .map_err(|error| WriteError::new(path, plain(&error)))?;
+    // Where files cannot be locked, their age protects them from being taken for left behind.
+    let _ = file.as_file().try_lock();
     let mut writer = BufWriter::new(file);
     let written = writer.write_all(bytes).and_then(|()| writer.flush());
     written.map_err(|error| WriteError::new(path, error))?;
@@ -176,10 +190,39 @@ fn write_temporary(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile,
     Ok(file)
 }
 
+/// Removes what killed programs left in a folder. Nothing depends on it.
+fn remove_left_behind(folder: &Path) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        if is_temporary(&entry.file_name()) && is_left_behind(&entry).unwrap_or(false) {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
+fn is_temporary(name: &OsStr) -> bool {
+    let random = name.to_str().and_then(|name| name.strip_prefix(TEMPORARY));
+    random.is_some_and(|text| {
+        text.len() == N_RANDOM && text.chars().all(|c| c.is_ascii_alphanumeric())
+    })
+}
+
+/// Whether a file is old, and whoever wrote it is gone.
+fn is_left_behind(entry: &DirEntry) -> io::Result<bool> {
+    let metadata = entry.metadata()?;
+    let is_old = metadata.modified()?.elapsed().is_ok_and(|age| LEFT_BEHIND <= age);
+    Ok(metadata.is_file() && is_old && File::open(entry.path())?.try_lock().is_ok())
+}
+
 /// What the system said, without the name of the temporary file: nobody knows that one.
 fn plain(error: &io::Error) -> String {
     let text = error.to_string();
     text.split_once(" at path ").map_or_else(|| text.clone(), |(reason, _)| reason.to_owned())
+}
+
+/// The file that a link stands for; the path itself where it is none, or leads nowhere.
+fn behind_links(path: &Path) -> PathBuf {
+    let target = path.is_symlink().then(|| std::fs::canonicalize(path).ok()).flatten();
+    target.unwrap_or_else(|| path.to_owned())
 }
 
 /// The folder that a file is in, or is to be in.
@@ -193,5 +236,55 @@ fn folder_of(path: &Path) -> &Path {
 fn sync_folder(path: &Path) {
     if let Ok(folder) = File::open(folder_of(path)) {
         drop(folder.sync_all());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::SystemTime;
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_stays_and_the_file_behind_it_is_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        std::fs::create_dir(path("elsewhere")).unwrap();
+        std::fs::write(path("elsewhere/a.toml"), "old").unwrap();
+        std::os::unix::fs::symlink("elsewhere/a.toml", path("a.toml")).unwrap();
+        check_writable(&path("a.toml")).unwrap();
+        replace_file(&path("a.toml"), b"new").unwrap();
+        assert!(path("a.toml").is_symlink(), "the link is gone");
+        assert_eq!(std::fs::read(path("elsewhere/a.toml")).unwrap(), b"new", "the file behind it");
+        create_file(&path("a.toml"), b"newer").unwrap_err();
+    }
+
+    #[test]
+    fn what_a_killed_program_left_is_removed_by_the_next_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let file = |name: &str, age: Duration| {
+            let file = File::create(path(name)).unwrap();
+            file.set_modified(SystemTime::now().checked_sub(age).unwrap()).unwrap();
+            file
+        };
+        let old = 2 * LEFT_BEHIND;
+        file(".penumbra-Ab3xYz", old);
+        file(".penumbra-youngx", LEFT_BEHIND / 2);
+        file(".penumbra-notes.txt", old);
+        file("penumbra-Ab3xYz", old);
+        let held = file(".penumbra-livesx", old);
+        held.try_lock().unwrap();
+        std::fs::create_dir(path(".penumbra-folder")).unwrap();
+        replace_file(&path("a.png"), b"new").unwrap();
+        let mut names: Vec<_> = std::fs::read_dir(folder.path())
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        let kept = [".penumbra-folder", ".penumbra-livesx", ".penumbra-notes.txt"];
+        let kept = [&kept[..], &[".penumbra-youngx", "a.png", "penumbra-Ab3xYz"]].concat();
+        assert_eq!(names, kept, "one file is left behind, and the rest is others'");
+        assert_eq!(std::fs::read(path("a.png")).unwrap(), b"new", "what was written");
     }
 }

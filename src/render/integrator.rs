@@ -224,7 +224,8 @@ impl<'a> TileRenderer<'a> {
     /// Adds the light of all surfaces met, block by block, leaves shadow rays, and goes on.
     fn shade(&mut self, block: &mut Block) {
         for group in 0..self.groups.len() {
-            let ((object, slot), mut places) = self.groups.take(group);
+            let (number, mut places) = self.groups.take(group);
+            let (object, slot) = self.world.slots[number];
             let coat = Coat::new(self.world, object, slot);
             while !places.is_empty() {
                 let n = places.len().min(BLOCK);

@@ -22,15 +22,12 @@ use rayon::prelude::*;
 
 use crate::render::integrator::TileRenderer;
 
+pub use crate::geometry::Stopped;
 pub use features::{Feature, PixelMap, Seen};
 pub use film::{Film, Sampling};
 pub use job::{RenderJob, RenderSettings};
 pub use noise::Noise;
 pub use world::{Pick, World};
-
-/// A pass was stopped; the film is as it was before.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Stopped;
 
 /// What a pass did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -151,3 +151,62 @@ fn sums<const N: usize>(
     let partial: Vec<[f64; N]> = pixels.par_chunks(CHUNK).map(of_chunk).collect();
     partial.into_iter().fold([0.0; N], add)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::Rgb;
+
+    /// Pixels of given samples, the same in all channels.
+    fn pixels(values: &[&[f32]]) -> Vec<PixelSums> {
+        let of = |values: &&[f32]| {
+            let mut pixel = PixelSums::default();
+            values.iter().for_each(|value| pixel.add(Rgb::splat(*value)));
+            pixel
+        };
+        values.iter().map(of).collect()
+    }
+
+    #[track_caller]
+    fn assert_near(found: f64, expected: f64, what: &str) {
+        assert!((found / expected - 1.0).abs() < 1e-6, "{what}: {found}, not {expected}");
+    }
+
+    /// s² / n with n - 1 in s², and its root mean square over the mean of the picture.
+    #[test]
+    fn independent_samples_are_judged_by_their_variance() {
+        let pixels = pixels(&[&[1.0, 3.0, 5.0], &[2.0, 2.0, 8.0]]);
+        let model = ErrorModel::new(Sampler::Random { seed: 0 }, &pixels);
+        let expected = [4.0 / 3.0, 12.0 / 3.0];
+        for (pixel, expected) in pixels.iter().zip(expected) {
+            assert_near(model.variance(pixel), expected, "variance of the mean");
+        }
+        let noise = model.noise(&pixels).unwrap();
+        let mean = 0.5 * (3.0 + 4.0);
+        assert_near(noise.percent, 100.0 * (8.0_f64 / 3.0).sqrt() / mean, "figure");
+    }
+
+    /// A quarter of all differences to come: of the halves and the quarters of the samples.
+    #[test]
+    fn sobol_points_are_judged_by_the_differences_to_come() {
+        let pixels = pixels(&[&[1.0, 2.0, 4.0, 5.0, 3.0, 1.0, 6.0, 4.0]]);
+        let model = ErrorModel::new(Sampler::Sobol { seed: 0 }, &pixels);
+        // Means of the quarters 1.5, 4.5, 2 and 5.
+        let (halves, quarters) = (0.25_f64, 9.0);
+        let ratio = (0.05_f64 * 0.42).sqrt();
+        assert_near(model.ratio, ratio, "ratio, at its bound");
+        let difference = (halves + 2.0 * ratio * quarters) / 3.0;
+        let expected = 0.25 * difference * (ratio + ratio.powi(2) / (1.0 - ratio));
+        assert_near(model.variance(&pixels[0]), expected, "variance of the mean");
+    }
+
+    #[test]
+    fn samples_to_a_noise_are_those_at_which_the_law_gives_it() {
+        for ratio in [0.35_f64, 0.5] {
+            let noise = Noise { percent: 8.0, uncertainty: 0.1, ratio };
+            // Three doublings.
+            let goal = 8.0 * ratio.powf(1.5);
+            assert_near(noise.samples_to(goal), 8.0, "three doublings");
+        }
+    }
+}

@@ -1,6 +1,8 @@
 //! A job made ready: its scene with the trees that rays need.
 
-use crate::geometry::{Geometry, Hit, Shape};
+use std::sync::atomic::AtomicBool;
+
+use crate::geometry::{Geometry, Hit, Shape, Stopped};
 use crate::math::RayBatch;
 use crate::render::emission::Emission;
 use crate::render::features::Feature;
@@ -18,6 +20,10 @@ pub struct World {
     /// For each object, whether any of its materials is glass.
     pub(super) is_clear: Vec<bool>,
     pub(super) has_glass: bool,
+    /// The material slots of all objects: object and slot.
+    pub(super) slots: Vec<(u32, u32)>,
+    /// For each object, where its slots start.
+    pub(super) first_slot: Vec<u32>,
     /// What lights others in "path" beside `[[lights]]`; empty in "direct".
     pub(super) emission: Emission,
 }
@@ -32,20 +38,34 @@ pub struct Pick {
 }
 
 impl World {
-    /// Builds the trees that are missing, on the current pool.
+    /// [`World::build`], to its end.
     pub fn new(job: RenderJob) -> Self {
+        Self::build(job, &AtomicBool::new(false)).expect("nobody stops it")
+    }
+
+    /// Builds the trees that are missing, on the current pool. `stop` is looked at as that goes on.
+    ///
+    /// # Errors
+    /// [`Stopped`]; trees that were finished before are kept with their meshes.
+    pub fn build(job: RenderJob, stop: &AtomicBool) -> Result<Self, Stopped> {
         let instances = job.scene.objects.iter().map(|object| object.instance.clone()).collect();
-        let geometry = Geometry::new(instances, job.settings.accelerator);
+        let geometry = Geometry::build(instances, job.settings.accelerator, stop)?;
         let is_glass = |object: &Object| {
             object.materials.iter().any(|id| job.scene.materials[*id as usize].is_glass())
         };
         let is_clear: Vec<bool> = job.scene.objects.iter().map(is_glass).collect();
         let has_glass = is_clear.contains(&true);
+        let (mut slots, mut first_slot) = (Vec::new(), Vec::new());
+        for (index, object) in job.scene.objects.iter().enumerate() {
+            first_slot.push(slots.len() as u32);
+            let n_slots = object.materials.len() as u32;
+            slots.extend((0..n_slots).map(|slot| (index as u32, slot)));
+        }
         let emission = match job.settings.integrator {
             IntegratorKind::Direct => Emission::default(),
             IntegratorKind::Path => Emission::new(&job.scene),
         };
-        Self { job, geometry, is_clear, has_glass, emission }
+        Ok(Self { job, geometry, is_clear, has_glass, slots, first_slot, emission })
     }
 
     /// The material at a hit.

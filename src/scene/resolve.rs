@@ -141,7 +141,7 @@ impl<'a> Resolver<'a> {
         self.materials.push(Material {
             diffuse,
             specular: rgb(entry.specular),
-            lobe: Ward { form, alpha_x: entry.alpha_x as f32, alpha_y: entry.alpha_y as f32 },
+            lobe: Ward { form, alpha_x: slope(entry.alpha_x), alpha_y: slope(entry.alpha_y) },
             tangent: dvec(entry.tangent).normalize_or(DVec3::X).as_vec3(),
             reflection: rgb(entry.reflection),
             transmission: rgb(entry.transmission),
@@ -353,6 +353,13 @@ fn light_frame(normal: DVec3, up: DVec3) -> Frame {
     }
     let x = across.normalize_or(DVec3::X);
     Frame { x: x.as_vec3(), y: x.cross(normal).as_vec3(), z: normal.as_vec3() }
+}
+
+/// A roughness: narrower ones than directions in f32 can tell from a mirror are the narrowest that they
+/// can, broader ones than reflect anything the broadest.
+fn slope(alpha: f64) -> f32 {
+    const SMALLEST: f64 = 1e-5;
+    alpha.clamp(SMALLEST, 1.0 / SMALLEST) as f32
 }
 
 fn dvec(triple: Triple) -> DVec3 {

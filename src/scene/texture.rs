@@ -244,3 +244,70 @@ fn smooth_step(low: f64, high: f64, x: f64) -> f64 {
     let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Values of every pattern at five points, computed apart from this program by the formulas at
+    /// the head of this file.
+    #[test]
+    fn patterns_have_the_values_of_their_formulas() {
+        const POINTS: [DVec3; 5] = [
+            DVec3::new(0.31, -0.42, 0.77),
+            DVec3::new(1.13, 2.21, -0.58),
+            DVec3::new(-0.87, 0.36, 1.49),
+            DVec3::new(0.52, 0.93, 0.18),
+            DVec3::new(2.4, -1.3, 0.6),
+        ];
+        let octaves = Octaves { count: 4, lacunarity: 2.1, gain: 0.6 };
+        let expected = [
+            (Pattern::Spots, [0.0, 0.0, 0.884_557, 0.0, 0.0]),
+            (Pattern::Marble, [0.959_037, 0.753_348, 0.924_140, 0.404_760, 0.885_393]),
+            (Pattern::Clouds, [0.344_231, 0.554_463, 0.670_366, 0.445_815, 0.422_945]),
+            (Pattern::Wood, [0.238_531, 0.229_724, 0.000_181, 0.810_828, 0.037_100]),
+        ];
+        for (pattern, values) in expected {
+            let colors = vec![Rgb::ZERO, Rgb::ONE];
+            let noise = Noise { pattern, scale: 1.7, octaves, distortion: 0.8, colors };
+            for (point, value) in POINTS.into_iter().zip(values) {
+                let found = noise.value(point);
+                assert!((found - value).abs() < 1e-6, "{pattern:?} at {point}: {found}");
+            }
+        }
+    }
+
+    /// Marble without distortion is 1/2 + 1/2 sin(pi s x), and its slope is known.
+    #[test]
+    fn the_slope_of_marble_is_that_of_its_formula() {
+        let octaves = Octaves { count: 3, lacunarity: 2.0, gain: 0.5 };
+        let colors = vec![Rgb::splat(0.2), Rgb::splat(0.7)];
+        let noise =
+            Noise { pattern: Pattern::Marble, scale: 1.3, octaves, distortion: 0.0, colors };
+        for x in [-2.3, 0.1, 0.4, 7.7] {
+            let at = DVec3::new(x, 0.3, -0.8);
+            let found = noise.luminance_gradient(at).as_dvec3();
+            let expected = DVec3::X * (0.5 * 0.5 * PI * 1.3 * f64::cos(PI * 1.3 * x));
+            assert!((found - expected).length() < 1e-5, "{found}, not {expected} at {x}");
+        }
+    }
+
+    /// Evenly spaced, linear in between.
+    #[test]
+    fn a_ramp_goes_through_its_colors() {
+        let octaves = Octaves { count: 1, lacunarity: 2.0, gain: 0.5 };
+        let colors = vec![Rgb::X, Rgb::Y, 3.0 * Rgb::Z];
+        let noise =
+            Noise { pattern: Pattern::Clouds, scale: 1.0, octaves, distortion: 0.0, colors };
+        for (value, expected) in [
+            (0.0, Rgb::X),
+            (0.25, Rgb::new(0.5, 0.5, 0.0)),
+            (0.5, Rgb::Y),
+            (0.9, Rgb::new(0.0, 0.2, 2.4)),
+            (1.0, 3.0 * Rgb::Z),
+        ] {
+            let found = noise.ramp(value);
+            assert!((found - expected).length() < 1e-6, "{found} at {value}");
+        }
+    }
+}

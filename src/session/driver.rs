@@ -209,7 +209,11 @@ impl<R: Renderer> Driver<'_, R> {
             self.set_phase(Phase::Failed(error.to_string()));
             return None;
         }
-        let world = Arc::new(self.renderer.prepare(&job));
+        let Ok(world) = self.renderer.prepare(&job, &self.shared.stop_preview) else {
+            self.set_phase(Phase::Idle);
+            return None;
+        };
+        let world = Arc::new(world);
         *lock(self.world) = Some(Arc::clone(&world));
         let trees = self.renderer.trees(&world);
         self.shared.update_status(|status| {

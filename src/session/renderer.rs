@@ -16,7 +16,10 @@ pub trait Renderer: Send + Sync + 'static {
     type World: Send + Sync;
 
     /// Makes a job ready; may take as long as building its trees does.
-    fn prepare(&self, job: &RenderJob) -> Self::World;
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    fn prepare(&self, job: &RenderJob, stop: &AtomicBool) -> Result<Self::World, Stopped>;
 
     /// The same, for a smaller picture of a scene that is ready.
     fn coarse(&self, world: &Self::World, scale: u32) -> Self::World;
@@ -91,8 +94,8 @@ impl PoolRenderer {
 impl Renderer for PoolRenderer {
     type World = World;
 
-    fn prepare(&self, job: &RenderJob) -> World {
-        self.pool.install(|| World::new(job.clone()))
+    fn prepare(&self, job: &RenderJob, stop: &AtomicBool) -> Result<World, Stopped> {
+        self.pool.install(|| World::build(job.clone(), stop))
     }
 
     fn coarse(&self, world: &World, scale: u32) -> World {

@@ -273,7 +273,7 @@ impl App {
         if self.pinned.take().is_some() {
             return;
         }
-        match self.picture_on_show() {
+        match self.picture.fitted() {
             Some(image) => {
                 let description = self.document.description.clone();
                 self.pinned = Some(Pinned::new(ctx, image, description));

@@ -238,7 +238,7 @@ impl App {
         let frame = self.work.session.latest().filter(|_| self.files.has_scene);
         if let Some(frame) = frame {
             let view = self.interface.display.view;
-            self.picture.show(&frame, view, &self.document.description.tone_mapping);
+            self.picture.show(ctx, &frame, view, &self.document.description.tone_mapping);
             if frame.scale == 1 {
                 self.work.note_noise(frame.generation, frame.samples, frame.noise);
             }

@@ -219,3 +219,29 @@ pub(super) fn picture_question(ctx: &egui::Context) -> Option<bool> {
     });
     modal.inner.or(modal.should_close().then_some(false))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where the system has no dialogs, the answer is "nothing" at once, or there is none.
+    #[test]
+    fn where_no_dialog_opens_a_path_can_be_typed() {
+        let now = Instant::now();
+        let long_ago = now.checked_sub(2 * FASTER_THAN_A_HAND).unwrap();
+        for (is_sent, since, types) in
+            [(true, now, true), (false, now, true), (true, long_ago, false)]
+        {
+            let (sender, answer) = channel();
+            if is_sent {
+                sender.send(None).unwrap();
+            }
+            drop(sender);
+            let asking = Some(Asking { purpose: Purpose::Open, answer, since });
+            let mut dialogs = PathDialogs { asking, typing: None };
+            assert_eq!(dialogs.answered(), None, "nobody chose a path");
+            assert!(dialogs.asking.is_none(), "the dialog stays open");
+            assert_eq!(dialogs.typing.is_some(), types, "sent {is_sent}, since {since:?}");
+        }
+    }
+}

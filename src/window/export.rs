@@ -167,7 +167,9 @@ fn make(
         return Exported::Failed(format!("{folder}: is no folder; choose one for the picture"));
     }
     let start = Instant::now();
-    let world = pool.install(|| World::new(order.job.clone()));
+    let Ok(world) = pool.install(|| World::build(order.job.clone(), stop)) else {
+        return Exported::Stopped;
+    };
     let developed = develop(&world, pool, order.goal, start, stop, |film| {
         let seconds = start.elapsed().as_secs_f64();
         tell(ExportProgress {

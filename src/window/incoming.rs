@@ -186,6 +186,7 @@ impl App {
         self.pinned = None;
         self.awaited_click = None;
         self.snapshot_wanted = false;
+        self.work.session.abandon();
         self.work.set_assets(Arc::default());
         self.document = Document::new(empty_scene(), None);
         self.gesture.next();

@@ -112,6 +112,9 @@ pub fn run(file: Option<PathBuf>) -> Result<(), WindowError> {
     });
     eframe::run_native(APP_ID, options, create).map_err(|error| match error {
         eframe::Error::WinitEventLoop(_) => WindowError::NoDisplay,
+        eframe::Error::NoGlutinConfigs(_, error) => {
+            WindowError::NoWindow { reason: format!("there is no OpenGL ({error})") }
+        }
         other => WindowError::NoWindow { reason: other.to_string() },
     })
 }

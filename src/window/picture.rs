@@ -21,6 +21,7 @@ pub(super) struct PictureDisplay {
     texture: Option<TextureHandle>,
     size: [u32; 2],
     image: Option<Arc<ColorImage>>,
+    fitted: Option<Arc<ColorImage>>,
     statistics: Option<PictureStatistics>,
     legend: Option<Legend>,
 }
@@ -32,6 +33,8 @@ struct Order {
     view: View,
     exposure: f64,
     operator: ToneOperator,
+    /// Most pixels along a side that the graphics card takes.
+    max_side: usize,
 }
 
 impl Order {
@@ -39,6 +42,7 @@ impl Order {
     fn is_same(&self, other: &Self) -> bool {
         let same_tone = (self.exposure, self.operator) == (other.exposure, other.operator);
         self.view == other.view
+            && self.max_side == other.max_side
             && self.view.same(&self.frame, &other.frame)
             && (same_tone || self.view != View::Picture)
     }
@@ -46,6 +50,8 @@ impl Order {
 
 struct Displayed {
     image: Arc<ColorImage>,
+    /// The same, or smaller where the graphics card wants it so.
+    fitted: Arc<ColorImage>,
     size: [u32; 2],
     is_coarse: bool,
     /// Of the picture; other views have none.
@@ -63,7 +69,7 @@ impl PictureDisplay {
         let mut bytes = Vec::new();
         let prepare = move |order: Order| match order.view {
             View::Picture => Some(display(&order, &mut bytes)),
-            view => display_view(&order.frame, view),
+            view => display_view(&order, view),
         };
         Ok(Self {
             thread: Background::new("display", prepare, wake)?,
@@ -71,6 +77,7 @@ impl PictureDisplay {
             texture: None,
             size: [1, 1],
             image: None,
+            fitted: None,
             statistics: None,
             legend: None,
         })
@@ -78,9 +85,16 @@ impl PictureDisplay {
 
     /// Asks for a view of this frame to be shown, with that tone mapping if it is the picture;
     /// asking again changes nothing.
-    pub(super) fn show(&mut self, frame: &Arc<Frame>, view: View, tone: &ToneMappingDescription) {
+    pub(super) fn show(
+        &mut self,
+        ctx: &egui::Context,
+        frame: &Arc<Frame>,
+        view: View,
+        tone: &ToneMappingDescription,
+    ) {
         let ToneMappingDescription { exposure, operator } = *tone;
-        let order = Order { frame: Arc::clone(frame), view, exposure, operator };
+        let max_side = ctx.input(|input| input.max_texture_side);
+        let order = Order { frame: Arc::clone(frame), view, exposure, operator, max_side };
         if self.asked.as_ref().is_some_and(|asked| asked.is_same(&order)) {
             return;
         }
@@ -93,13 +107,14 @@ impl PictureDisplay {
         // Without what a view needs, what was shown before stays.
         let Some(ready) = self.thread.take().flatten() else { return };
         let options = texture_options(ready.is_coarse);
-        let image = Arc::clone(&ready.image);
+        let image = Arc::clone(&ready.fitted);
         match &mut self.texture {
             Some(texture) => texture.set(image, options),
             None => self.texture = Some(ctx.load_texture("picture", image, options)),
         }
         self.size = ready.size;
         self.image = Some(ready.image);
+        self.fitted = Some(ready.fitted);
         self.statistics = ready.statistics;
         self.legend = ready.legend;
     }
@@ -112,6 +127,11 @@ impl PictureDisplay {
     /// The bytes on show.
     pub(super) fn image(&self) -> Option<&Arc<ColorImage>> {
         self.image.as_ref()
+    }
+
+    /// The bytes on show as the graphics card takes them: fewer, where the picture is too large.
+    pub(super) fn fitted(&self) -> Option<&Arc<ColorImage>> {
+        self.fitted.as_ref()
     }
 
     /// What the colours on show mean, where they are not the picture's own.
@@ -141,8 +161,10 @@ fn display(order: &Order, bytes: &mut Vec<[u8; 3]>) -> Displayed {
         })
         .collect();
     let size = [picture.width as usize, picture.height as usize];
+    let image = Arc::new(ColorImage::new(size, pixels));
     Displayed {
-        image: Arc::new(ColorImage::new(size, pixels)),
+        fitted: fitted(&image, order.max_side),
+        image,
         size: [order.frame.job.width, order.frame.job.height],
         is_coarse: 1 < order.frame.scale,
         statistics: Some(PictureStatistics { histogram }),
@@ -151,16 +173,44 @@ fn display(order: &Order, bytes: &mut Vec<[u8; 3]>) -> Displayed {
 }
 
 /// A view other than the picture, where the frame has what it needs.
-fn display_view(frame: &Frame, view: View) -> Option<Displayed> {
-    let painted = paint(view, frame)?;
-    let size = [frame.job.width, frame.job.height];
+fn display_view(order: &Order, view: View) -> Option<Displayed> {
+    let painted = paint(view, &order.frame)?;
+    let size = [order.frame.job.width, order.frame.job.height];
+    let image = Arc::new(painted.image);
     Some(Displayed {
-        is_coarse: painted.image.size[0] < size[0] as usize,
-        image: Arc::new(painted.image),
+        is_coarse: image.size[0] < size[0] as usize,
+        fitted: fitted(&image, order.max_side),
+        image,
         size,
         statistics: None,
         legend: Some(painted.legend),
     })
+}
+
+/// An image of at most so many pixels a side: the same, or the means of squares of pixels.
+fn fitted(image: &Arc<ColorImage>, max_side: usize) -> Arc<ColorImage> {
+    let [width, height] = image.size;
+    let side = width.max(height).div_ceil(max_side.max(1));
+    if side <= 1 {
+        return Arc::clone(image);
+    }
+    let size = [width.div_ceil(side), height.div_ceil(side)];
+    let mean = |x: usize, y: usize| {
+        let (columns, rows) = (x * side..width.min((x + 1) * side), y * side..height);
+        let mut sums = [0_usize; 3];
+        for row in rows.take(side) {
+            for pixel in &image.pixels[row * width..][columns.clone()] {
+                for (sum, value) in sums.iter_mut().zip(pixel.to_array()) {
+                    *sum += usize::from(value);
+                }
+            }
+        }
+        let n = columns.len() * side.min(height - y * side);
+        let [r, g, b] = sums.map(|sum| (sum / n) as u8);
+        Color32::from_rgb(r, g, b)
+    };
+    let pixels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
+    Arc::new(ColorImage::new(size, pixels.map(|(x, y)| mean(x, y)).collect()))
 }
 
 /// A full picture shows its pixels when enlarged; a coarse one is smoothed.
@@ -213,5 +263,19 @@ mod tests {
             assert_eq!(shown, Some([side, side]), "frame {sequence} is not shown");
             assert_eq!(display.shown().unwrap().size, [16, 16], "it stands for another size");
         }
+    }
+
+    #[test]
+    fn pictures_too_large_for_the_graphics_card_are_shown_smaller() {
+        let grey = |x: usize, y: usize| Color32::from_gray((10 * x + y) as u8);
+        let pixels = (0..3).flat_map(|y| (0..5).map(move |x| grey(x, y)));
+        let image = Arc::new(ColorImage::new([5, 3], pixels.collect()));
+        assert!(Arc::ptr_eq(&fitted(&image, 5), &image), "one that fits is shown as it is");
+        let small = fitted(&image, 4);
+        assert_eq!(small.size, [3, 2], "half as many a side");
+        let values: Vec<u8> = small.pixels.iter().map(|pixel| pixel.r()).collect();
+        // (0 + 10 + 1 + 11) / 4, and at the borders the mean of what is there.
+        assert_eq!(values, [5, 25, 40, 7, 27, 42], "means");
+        assert_eq!(fitted(&image, 1).size, [1, 1], "one pixel for all");
     }
 }

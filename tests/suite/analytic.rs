@@ -1,6 +1,8 @@
 //! Radiance against closed forms and quadrature.
 
+mod coordinates;
 mod emitters;
+mod extremes;
 mod furnace;
 mod glass;
 mod gloss;

@@ -153,6 +153,82 @@ fn mixtures_have_their_density() {
     }
 }
 
+/// Directions for a square of numbers are as dense as the square is stretched by the map: the density is
+/// one over the area that its two slopes span. Of many places, as many as a step across a fold leaves
+/// over are wrong.
+#[track_caller]
+fn assert_jacobian(
+    sample: impl Fn([f32; 2]) -> Option<Vec3>,
+    pdf: impl Fn(Vec3) -> f64,
+    tolerance: f64,
+    what: &str,
+) {
+    const STEP: f32 = 1.0 / 512.0;
+    let mut numbers = Numbers::new(21);
+    let mut errors = Vec::new();
+    while errors.len() < 400 {
+        let [u, v] = [0, 1].map(|_| numbers.between(0.01, 0.99) as f32);
+        let (low, high) = (|x: f32| x - STEP, |x: f32| x + STEP);
+        let places = [[u, v], [low(u), v], [high(u), v], [u, low(v)], [u, high(v)]];
+        let Some([here, left, right, down, up]) = all_of(places.map(&sample)) else {
+            // What is rejected is no place of the map.
+            errors.push(0.0);
+            continue;
+        };
+        let slope = |a: Vec3, b: Vec3| (b.as_dvec3() - a.as_dvec3()) / f64::from(2.0 * STEP);
+        let area = slope(left, right).cross(slope(down, up)).length();
+        errors.push(pdf(here) * area - 1.0);
+    }
+    // The middle error says whether the whole is off, the spread whether parts are.
+    errors.sort_unstable_by(f64::total_cmp);
+    let (low, high) = (errors[errors.len() / 20], errors[errors.len() * 19 / 20]);
+    assert!(-tolerance < low && high < tolerance, "{what}: density off by {low} to {high}");
+}
+
+fn all_of<const N: usize>(values: [Option<Vec3>; N]) -> Option<[Vec3; N]> {
+    values.iter().all(Option::is_some).then(|| values.map(Option::unwrap))
+}
+
+#[test]
+fn densities_are_the_stretch_of_the_maps_from_numbers_to_directions() {
+    for form in FORMS {
+        for (alpha_x, alpha_y) in [(0.3, 0.3), (0.1, 0.4), (1.2, 0.4)] {
+            let lobe = Ward { form, alpha_x, alpha_y };
+            for theta_deg in [5.0, 40.0, 75.0] {
+                let wo = viewer(theta_deg, 0.6);
+                let what = format!("{lobe:?} at {theta_deg} degrees");
+                let pdf = |wi| f64::from(lobe.pdf(wo, wi));
+                assert_jacobian(|u| lobe.sample(wo, u), pdf, 0.01, &what);
+            }
+        }
+    }
+    let hemisphere = |u| Some(warp::square_to_cosine_hemisphere(u));
+    let pdf = |wi: Vec3| f64::from(warp::cosine_hemisphere_pdf(wi.z));
+    assert_jacobian(hemisphere, pdf, 0.01, "the cosine hemisphere");
+    let frame = Frame::from_normal_tangent(Vec3::new(0.6, -0.8, 0.0), Vec3::Z);
+    let (center, radiance) = (Vec3::new(1.0, 3.0, -2.0), Rgb::ONE);
+    let emitters = [
+        Emitter::Rectangle { center, frame, half: [0.5, 1.0], radiance },
+        Emitter::Disk { center, frame, radius: 1.0, radiance },
+        Emitter::Sphere { center, radius: 1.0, radiance },
+        Emitter::SunCap { frame, one_minus_cos: 0.3, radiance },
+    ];
+    for emitter in emitters {
+        let light = Light { visible: true, emitter };
+        for place in
+            [Vec3::new(0.5, 0.3, 12.0), Vec3::new(-0.4, 0.3, 1.3), Vec3::new(2.0, 1.0, 0.5)]
+        {
+            let from = center + frame.world_from_local(place);
+            let pdf = |d: Vec3| {
+                let met = light.intersect(&Ray::new(from, d));
+                met.map_or(f64::NAN, |(t, _)| f64::from(light.pdf(from, d, t)))
+            };
+            let sample = |u| light.sample(from, u).map(|sample| sample.direction);
+            assert_jacobian(sample, pdf, 0.01, &format!("{emitter:?} from {place}"));
+        }
+    }
+}
+
 #[test]
 fn the_cosine_hemisphere_has_its_density() {
     assert_hemisphere(

@@ -2,6 +2,8 @@
 //!
 //! What loads is rendered too, in a few pixels, by every accelerator.
 
+mod odd;
+
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -10,6 +10,9 @@
 //! leaves. So every tree has a budget of such copies, handed down in proportion to the items, and
 //! what would cost more stays a leaf.
 
+use std::sync::atomic::AtomicBool;
+
+use crate::geometry::Stopped;
 use crate::geometry::kd_tree::traverse::MAX_DEPTH;
 use crate::geometry::kd_tree::{KdTree, Node};
 use crate::math::Aabb;
@@ -47,17 +50,26 @@ pub struct Item {
 }
 
 /// Builds a tree over items with non-empty bounds. `clip` gives the bounds of what an item has
-/// inside a box; it may be larger, and empty where there is nothing.
-pub fn build(items: Vec<Item>, split: Split, clip: &(impl Fn(u32, Aabb) -> Aabb + Sync)) -> KdTree {
+/// inside a box; it may be larger, and empty where there is nothing. `stop` is looked at before
+/// every large cut.
+///
+/// # Errors
+/// [`Stopped`].
+pub fn build(
+    items: Vec<Item>,
+    split: Split,
+    clip: &(impl Fn(u32, Aabb) -> Aabb + Sync),
+    stop: &AtomicBool,
+) -> Result<KdTree, Stopped> {
     let bounds = items.iter().fold(Aabb::EMPTY, |all, item| all.union(item.bounds));
     let log = usize::BITS - items.len().leading_zeros();
     let max_depth = (8 + (1.3 * log as f32) as usize).min(MAX_DEPTH);
-    let builder = Builder { split, clip };
+    let builder = Builder { split, clip, stop };
     let n_copies = COPIES_AN_ITEM * items.len() + FREE_COPIES;
-    let root = builder.node(items, bounds, Allowance { depth: max_depth, n_copies, n_bad: 0 });
+    let root = builder.node(items, bounds, Allowance { depth: max_depth, n_copies, n_bad: 0 })?;
     let mut tree = KdTree { bounds, nodes: Vec::new(), items: Vec::new() };
     flatten(&root, &mut tree);
-    tree
+    Ok(tree)
 }
 
 enum BuildNode {
@@ -68,6 +80,7 @@ enum BuildNode {
 struct Builder<'a, C> {
     split: Split,
     clip: &'a C,
+    stop: &'a AtomicBool,
 }
 
 /// What is left for a subtree.
@@ -89,8 +102,12 @@ struct Cut {
 }
 
 impl<C: Fn(u32, Aabb) -> Aabb + Sync> Builder<'_, C> {
-    fn node(&self, items: Vec<Item>, cell: Aabb, allowed: Allowance) -> BuildNode {
+    fn node(&self, items: Vec<Item>, cell: Aabb, allowed: Allowance) -> Result<BuildNode, Stopped> {
         let Allowance { depth, n_copies, n_bad } = allowed;
+        let is_large = items.len() > PARALLEL_LIMIT;
+        if is_large {
+            Stopped::check(self.stop)?;
+        }
         let leaf_cost = COST_ITEM * items.len() as f32;
         let (cut, n_bad) = match self.split {
             Split::Midpoint => (midpoint(&items, &cell), 0),
@@ -105,9 +122,8 @@ impl<C: Fn(u32, Aabb) -> Aabb + Sync> Builder<'_, C> {
         let is_affordable = |cut: &Cut| n_copies_of(&items, *cut) <= n_copies;
         let cut = cut.filter(|cut| depth > 0 && !is_hopeless && is_affordable(cut));
         let Some(cut) = cut else {
-            return BuildNode::Leaf(items.iter().map(|item| item.id).collect());
+            return Ok(BuildNode::Leaf(items.iter().map(|item| item.id).collect()));
         };
-        let n_items = items.len();
         let n_left = n_copies - n_copies_of(&items, cut);
         let (lower_items, upper_items) = self.distribute(items, &cell, cut);
         let (mut lower_cell, mut upper_cell) = (cell, cell);
@@ -119,9 +135,9 @@ impl<C: Fn(u32, Aabb) -> Aabb + Sync> Builder<'_, C> {
         let below = |n_copies| Allowance { depth: depth - 1, n_copies, n_bad };
         let lower = || self.node(lower_items, lower_cell, below(lower_copies));
         let upper = || self.node(upper_items, upper_cell, below(n_left - lower_copies));
-        let (lower, upper) =
-            if n_items > PARALLEL_LIMIT { rayon::join(lower, upper) } else { (lower(), upper()) };
-        BuildNode::Inner { axis: cut.axis, plane: cut.plane, children: Box::new([lower, upper]) }
+        let (lower, upper) = if is_large { rayon::join(lower, upper) } else { (lower(), upper()) };
+        let children = Box::new([lower?, upper?]);
+        Ok(BuildNode::Inner { axis: cut.axis, plane: cut.plane, children })
     }
 
     /// Items below, above, and on both sides; the last are clipped to each.

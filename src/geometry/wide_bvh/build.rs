@@ -3,8 +3,11 @@
 //! Source: I. Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", IEEE RT 2007.
 //! A node is opened until it has eight children: always the child of the largest surface.
 
+use std::sync::atomic::AtomicBool;
+
 use glam::Vec3;
 
+use crate::geometry::Stopped;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::wide_bvh::{BLOCK, Block, LEAF, Node, WIDTH};
 use crate::math::Aabb;
@@ -38,14 +41,16 @@ pub(super) struct Subtree {
 }
 
 /// The tree over all triangles of a mesh that has some: nodes, blocks and the root's reference.
-pub(super) fn build(mesh: &Mesh) -> (Subtree, u32) {
+/// `stop` is looked at before every cut of a large range.
+pub(super) fn build(mesh: &Mesh, stop: &AtomicBool) -> Result<(Subtree, u32), Stopped> {
     let n_triangles = mesh.triangles.len() as u32;
     let item = |id: u32| Item { bounds: Aabb::of(mesh.corners(id)), id };
     let mut items: Vec<Item> = (0..n_triangles).map(item).collect();
     let mut tree = Subtree::default();
     let bounds = bounds_of(&items);
-    let root = subtree(mesh, Range { items: &mut items, bounds }, 0, &mut tree);
-    (tree, root)
+    let source = Source { mesh, stop };
+    let root = source.subtree(Range { items: &mut items, bounds }, 0, &mut tree)?;
+    Ok((tree, root))
 }
 
 /// Triangles that belong together.
@@ -58,69 +63,87 @@ fn bounds_of(items: &[Item]) -> Aabb {
     items.iter().fold(Aabb::EMPTY, |all, item| all.union(item.bounds))
 }
 
-/// Appends the subtree of a range and gives the reference to it.
-fn subtree(mesh: &Mesh, range: Range<'_>, depth: u32, tree: &mut Subtree) -> u32 {
-    if range.items.len() <= BLOCK {
-        tree.blocks.push(Block::new(mesh, range.items.iter().map(|item| item.id)));
-        return LEAF | (tree.blocks.len() - 1) as u32;
-    }
-    let is_large = range.items.len() > PARALLEL_LIMIT;
-    let mut ranges = Vec::with_capacity(WIDTH);
-    ranges.push(range);
-    while ranges.len() < WIDTH {
-        // Deep down, and of equal surfaces, the one of most triangles: so the parts get equal.
-        let area = |i: usize| if depth < SAH_DEPTH { ranges[i].bounds.half_area() } else { 0.0 };
-        let order = |a: &usize, b: &usize| {
-            let by_number = ranges[*a].items.len().cmp(&ranges[*b].items.len());
-            area(*a).total_cmp(&area(*b)).then(by_number)
-        };
-        let widest = (0..ranges.len()).filter(|i| ranges[*i].items.len() > BLOCK).max_by(order);
-        let Some(widest) = widest else { break };
-        let (lower, upper) = split(ranges.swap_remove(widest), depth);
-        ranges.push(lower);
-        ranges.push(upper);
-    }
-    let id = tree.nodes.len();
-    let mut node = Node::EMPTY;
-    for (child, range) in ranges.iter().enumerate() {
-        node.set_bounds(child, &range.bounds);
-    }
-    node.n_children = ranges.len() as u32;
-    tree.nodes.push(node);
-    if is_large {
-        let built = in_parallel(mesh, ranges, depth + 1);
-        for (child, (part, root)) in built.into_iter().enumerate() {
-            tree.nodes[id].children[child] = append(tree, part, root);
-        }
-    } else {
-        for (child, range) in ranges.into_iter().enumerate() {
-            let reference = subtree(mesh, range, depth + 1, tree);
-            tree.nodes[id].children[child] = reference;
-        }
-    }
-    id as u32
+/// What is built of, and whether it is still wanted.
+#[derive(Clone, Copy)]
+struct Source<'a> {
+    mesh: &'a Mesh,
+    stop: &'a AtomicBool,
 }
 
-fn in_parallel(mesh: &Mesh, mut ranges: Vec<Range<'_>>, depth: u32) -> Vec<(Subtree, u32)> {
-    if ranges.len() == 1 {
-        let range = ranges.remove(0);
-        let mut part = Subtree::default();
-        let root = subtree(mesh, range, depth, &mut part);
-        return vec![(part, root)];
+impl Source<'_> {
+    /// Appends the subtree of a range and gives the reference to it.
+    fn subtree(self, range: Range<'_>, depth: u32, tree: &mut Subtree) -> Result<u32, Stopped> {
+        if range.items.len() <= BLOCK {
+            tree.blocks.push(Block::new(self.mesh, range.items.iter().map(|item| item.id)));
+            return Ok(LEAF | (tree.blocks.len() - 1) as u32);
+        }
+        let is_large = range.items.len() > PARALLEL_LIMIT;
+        let mut ranges = Vec::with_capacity(WIDTH);
+        ranges.push(range);
+        while ranges.len() < WIDTH {
+            // Deep down, and of equal surfaces, the one of most triangles: so the parts get equal.
+            let area =
+                |i: usize| if depth < SAH_DEPTH { ranges[i].bounds.half_area() } else { 0.0 };
+            let order = |a: &usize, b: &usize| {
+                let by_number = ranges[*a].items.len().cmp(&ranges[*b].items.len());
+                area(*a).total_cmp(&area(*b)).then(by_number)
+            };
+            let widest = (0..ranges.len()).filter(|i| ranges[*i].items.len() > BLOCK).max_by(order);
+            let Some(widest) = widest else { break };
+            if is_large {
+                Stopped::check(self.stop)?;
+            }
+            let (lower, upper) = split(ranges.swap_remove(widest), depth);
+            ranges.push(lower);
+            ranges.push(upper);
+        }
+        let id = tree.nodes.len();
+        let mut node = Node::EMPTY;
+        for (child, range) in ranges.iter().enumerate() {
+            node.set_bounds(child, &range.bounds);
+        }
+        node.n_children = ranges.len() as u32;
+        tree.nodes.push(node);
+        if is_large {
+            let built = self.in_parallel(ranges, depth + 1)?;
+            for (child, (part, root)) in built.into_iter().enumerate() {
+                tree.nodes[id].children[child] = append(tree, part, root);
+            }
+        } else {
+            for (child, range) in ranges.into_iter().enumerate() {
+                let reference = self.subtree(range, depth + 1, tree)?;
+                tree.nodes[id].children[child] = reference;
+            }
+        }
+        Ok(id as u32)
     }
-    // Halves of about the same work.
-    let total: usize = ranges.iter().map(|range| range.items.len()).sum();
-    let mut cut = 1;
-    let mut before = ranges[0].items.len();
-    while cut + 1 < ranges.len() && before + ranges[cut].items.len() / 2 < total / 2 {
-        before += ranges[cut].items.len();
-        cut += 1;
+
+    fn in_parallel(
+        self,
+        mut ranges: Vec<Range<'_>>,
+        depth: u32,
+    ) -> Result<Vec<(Subtree, u32)>, Stopped> {
+        if ranges.len() == 1 {
+            let range = ranges.remove(0);
+            let mut part = Subtree::default();
+            let root = self.subtree(range, depth, &mut part)?;
+            return Ok(vec![(part, root)]);
+        }
+        // Halves of about the same work.
+        let total: usize = ranges.iter().map(|range| range.items.len()).sum();
+        let mut cut = 1;
+        let mut before = ranges[0].items.len();
+        while cut + 1 < ranges.len() && before + ranges[cut].items.len() / 2 < total / 2 {
+            before += ranges[cut].items.len();
+            cut += 1;
+        }
+        let upper = ranges.split_off(cut);
+        let (lower, upper) =
+            rayon::join(|| self.in_parallel(ranges, depth), || self.in_parallel(upper, depth));
+        let mut built = lower?;
+        built.extend(upper?);
+        Ok(built)
     }
-    let upper = ranges.split_off(cut);
-    let (mut lower, upper) =
-        rayon::join(|| in_parallel(mesh, ranges, depth), || in_parallel(mesh, upper, depth));
-    lower.extend(upper);
-    lower
 }
 
 /// Moves a finished part into the tree; gives the reference to it there.

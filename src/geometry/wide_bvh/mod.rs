@@ -15,14 +15,15 @@ mod single;
 mod stream;
 
 use std::cell::RefCell;
+use std::sync::atomic::AtomicBool;
 
 use glam::Vec3;
 
-use crate::geometry::TraversalCost;
 use crate::geometry::lanes::Portable;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::nearest::{Nearest, Search};
 use crate::geometry::wide_bvh::stream::{Fleet, TakeAny, TakeNearest};
+use crate::geometry::{Stopped, TraversalCost};
 use crate::math::{Aabb, Ray, RayBatch};
 
 /// Children of a node.
@@ -132,9 +133,10 @@ impl WideBvh {
     }
 
     /// Builds the tree of a mesh that has triangles, on the current pool.
-    pub(super) fn build(mesh: &Mesh) -> Self {
-        let (tree, root) = build::build(mesh);
-        Self { nodes: tree.nodes, blocks: tree.blocks, root, magnitude: mesh.bounds().max_abs() }
+    pub(super) fn build(mesh: &Mesh, stop: &AtomicBool) -> Result<Self, Stopped> {
+        let (tree, root) = build::build(mesh, stop)?;
+        let magnitude = mesh.bounds().max_abs();
+        Ok(Self { nodes: tree.nodes, blocks: tree.blocks, root, magnitude })
     }
 
     /// Number of nodes.
@@ -301,7 +303,7 @@ mod tests {
     fn all_registers_agree_with_brute_force() {
         use crate::geometry::triangle::ShearedRay;
         let (mesh, rays) = (soup(600), rays(4096 + 9));
-        let bvh = WideBvh::build(&mesh);
+        let bvh = WideBvh::build(&mesh, &AtomicBool::new(false)).unwrap();
         let mut by_packet: Vec<Nearest> = rays.t_max.iter().map(|t| Nearest::new(*t)).collect();
         let mut portable = by_packet.clone();
         let mut blocked = vec![false; rays.len()];
@@ -344,7 +346,7 @@ mod tests {
     /// Reciprocals and their products are infinite there, and their differences no numbers.
     #[test]
     fn a_ray_whose_box_tests_all_overflow_comes_to_an_end() {
-        let bvh = WideBvh::build(&soup(600));
+        let bvh = WideBvh::build(&soup(600), &AtomicBool::new(false)).unwrap();
         let far = Vec3::splat(3e19);
         let mut rays = RayBatch::default();
         (0..32).for_each(|_| rays.push(Ray::new(far, Vec3::splat(-1e-25))));
@@ -361,7 +363,7 @@ mod tests {
     fn a_thousand_equal_triangles_make_a_tree_of_bounded_depth() {
         let positions = vec![Vec3::X, Vec3::Y, Vec3::Z];
         let mesh = Mesh { positions, triangles: vec![[0, 1, 2]; 20_000], ..Mesh::default() };
-        let bvh = WideBvh::build(&mesh);
+        let bvh = WideBvh::build(&mesh, &AtomicBool::new(false)).unwrap();
         let ray = Ray::new(Vec3::ZERO, Vec3::ONE);
         let mut search = Search::new(&ray);
         bvh.intersect(&ray, 0, &mut search);

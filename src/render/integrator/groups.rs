@@ -1,16 +1,15 @@
 //! Which paths of a wave have met the same material of the same object: those are shaded together.
 
+use std::ops::Range;
+
 use crate::geometry::Hit;
 use crate::render::world::World;
 
 /// The paths of a wave by what they have met, each group in the order of the wave.
 #[derive(Default)]
 pub(super) struct Groups {
-    /// For each object, the number of its first slot; one more for the end.
-    first: Vec<u32>,
-    /// What each number stands for: object and slot.
-    names: Vec<(u32, u32)>,
-    /// For each number, how many paths there are, and later where they go. Zeros between waves.
+    /// For each material slot of the world, how many paths there are, and later where they go. Zeros
+    /// between waves.
     counts: Vec<u32>,
     /// Path and number, in the order of the wave.
     met: Vec<(u32, u32)>,
@@ -24,14 +23,7 @@ pub(super) struct Groups {
 
 impl Groups {
     pub(super) fn new(world: &World) -> Self {
-        let mut groups = Self::default();
-        for (object, entry) in world.job.scene.objects.iter().enumerate() {
-            groups.first.push(groups.names.len() as u32);
-            let slots = 0..entry.materials.len() as u32;
-            groups.names.extend(slots.map(|slot| (object as u32, slot)));
-        }
-        groups.counts.resize(groups.names.len(), 0);
-        groups
+        Self { counts: vec![0; world.slots.len()], ..Self::default() }
     }
 
     /// Forgets all paths.
@@ -42,7 +34,7 @@ impl Groups {
 
     /// Takes a path and what it has met.
     pub(super) fn push(&mut self, world: &World, path: u32, hit: Hit) {
-        let number = self.first[hit.id.object as usize] + world.slot_at(hit);
+        let number = world.first_slot[hit.id.object as usize] + world.slot_at(hit);
         let count = &mut self.counts[number as usize];
         if *count == 0 {
             self.seen.push(number);
@@ -73,13 +65,13 @@ impl Groups {
         self.seen.len()
     }
 
-    /// Object and slot of a group, and where its paths are in the order; for each once, in turn.
-    pub(super) fn take(&mut self, group: usize) -> ((u32, u32), std::ops::Range<usize>) {
+    /// Number of a group's slot, and where its paths are in the order; for each once, in turn.
+    pub(super) fn take(&mut self, group: usize) -> (usize, Range<usize>) {
         let number = self.seen[group] as usize;
         let end = std::mem::take(&mut self.counts[number]) as usize;
         let start = self.start;
         self.start = end;
-        (self.names[number], start..end)
+        (number, start..end)
     }
 
     /// A path by its place in the order.

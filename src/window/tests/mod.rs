@@ -3,12 +3,14 @@
 mod bench;
 mod editing;
 mod export;
+mod extremes;
 mod layout;
 mod loading;
 mod navigation;
 mod panels;
 pub(in crate::window) mod parameters;
 mod promises;
+mod random_user;
 mod start;
 mod views;
 mod whole;

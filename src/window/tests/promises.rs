@@ -38,14 +38,14 @@ struct Greys {
 impl Renderer for Greys {
     type World = World;
 
-    fn prepare(&self, job: &RenderJob) -> World {
+    fn prepare(&self, job: &RenderJob, _: &AtomicBool) -> Result<World, Stopped> {
         let grey = FIRST_GREY + self.n_jobs.fetch_add(1, Ordering::SeqCst);
         let mut scene = (*job.scene).clone();
         scene.objects.clear();
         scene.lights.clear();
         let light = linear_from_srgb(grey as f32 / 255.0);
         scene.background = Background::Color(glam::Vec3::splat(light));
-        World::new(RenderJob { scene: Arc::new(scene), ..job.clone() })
+        Ok(World::new(RenderJob { scene: Arc::new(scene), ..job.clone() }))
     }
 
     fn coarse(&self, world: &World, scale: u32) -> World {

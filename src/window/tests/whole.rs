@@ -11,6 +11,9 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+/// Longer than anything takes, also on a machine that has much else to do.
+pub(super) const PATIENCE: Duration = Duration::from_secs(180);
+
 /// A scene file that renders in no time.
 pub(super) fn scene_file(folder: &Path) -> PathBuf {
     let path = folder.join("small.toml");
@@ -93,11 +96,18 @@ pub(super) fn harness_of(app: App, size: [f32; 2], per_point: f32) -> Harness<'s
 pub(super) fn wait_until(harness: &mut Harness<'_, App>, is_so: impl Fn(&App) -> bool) {
     let since = Instant::now();
     while !is_so(harness.state()) {
-        assert!(since.elapsed() < Duration::from_secs(60), "waited for a minute in vain");
+        assert!(since.elapsed() < PATIENCE, "waited in vain: {}", doings(harness));
         harness.step();
         std::thread::yield_now();
     }
     harness.run_steps(3);
+}
+
+/// What a window is busy with.
+fn doings(harness: &Harness<'_, App>) -> String {
+    let app = harness.state();
+    let (status, loading) = (app.work.session.status(), &app.files.loading);
+    format!("{:?}, {} samples; loading {loading:?}", status.phase, status.samples)
 }
 
 pub(super) fn drag(harness: &mut Harness<'_, App>, from: egui::Pos2, by: egui::Vec2) {

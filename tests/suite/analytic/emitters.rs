@@ -96,8 +96,8 @@ fn a_glowing_sheet_lights_on_both_sides() {
 fn a_bright_spot_in_the_sky_is_found() {
     let image = || {
         let mut texels = vec![[0.05, 0.1, 0.2]; 64 * 32];
-        texels[9 * 64 + 20] = [1.0, 0.9, 0.5];
-        texels[2 * 64 + 50] = [1.0, 1.0, 1.0];
+        texels[9 * 64 + 20] = [200.0, 180.0, 100.0];
+        texels[2 * 64 + 50] = [100.0, 100.0, 100.0];
         Image { width: 64, height: 32, texels }
     };
     let sky = "[environment]\nbackground = 'sky'\n[[textures]]\nname = 'sky'\ntype = 'image'\n\

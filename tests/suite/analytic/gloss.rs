@@ -7,11 +7,11 @@ use penumbra::brdf::{Ward, WardForm};
 
 use crate::common::{Look, Numbers, assert_close};
 
-const FORMS: [(WardForm, &str); 3] =
+pub(super) const FORMS: [(WardForm, &str); 3] =
     [(WardForm::Original, "original"), (WardForm::Duer, "duer"), (WardForm::Bounded, "bounded")];
 
 /// The contract's formulas, written down again in double precision.
-fn reference(form: WardForm, ax: f64, ay: f64, wo: DVec3, wi: DVec3) -> f64 {
+pub(super) fn reference(form: WardForm, ax: f64, ay: f64, wo: DVec3, wi: DVec3) -> f64 {
     if wo.z <= 0.0 || wi.z <= 0.0 {
         return 0.0;
     }
@@ -28,12 +28,12 @@ fn reference(form: WardForm, ax: f64, ay: f64, wo: DVec3, wi: DVec3) -> f64 {
     }
 }
 
-fn direction(theta: f64, phi: f64) -> DVec3 {
+pub(super) fn direction(theta: f64, phi: f64) -> DVec3 {
     DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos())
 }
 
 /// Share of the light from `wi` that is reflected, by quadrature about the mirror direction.
-fn albedo(form: WardForm, ax: f64, ay: f64, wi: DVec3) -> f64 {
+pub(super) fn albedo(form: WardForm, ax: f64, ay: f64, wi: DVec3) -> f64 {
     // Over half vectors h, which crowd about the normal: dw = 4 (h.wi) dh.
     let (n_theta, n_phi) = (400, 200);
     let mut sum = 0.0;

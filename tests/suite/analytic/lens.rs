@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::{DVec3, Vec2};
 use penumbra::scene::Camera;
 
-use crate::common::{Numbers, assert_close, film, job};
+use crate::common::{Numbers, assert_close, film, job, mean};
 
 /// What the contract says of the pinhole ray, in double precision.
 fn project(eye: DVec3, target: DVec3, up: DVec3, fov: f64, size: [f64; 2], p: DVec3) -> [f64; 2] {
@@ -37,6 +37,26 @@ fn rays_go_through_the_points_that_they_show() {
         let miss = direction.normalize().cross((p - eye).normalize()).length();
         let spread = direction.length();
         assert!(miss < 1e-5 * spread, "{miss} beside {p} seen from {eye} through {fov}");
+    }
+}
+
+/// One pixel before a sheet that ends within it: its mean is the share that the sheet covers, for edges
+/// close to either border too.
+#[test]
+fn a_pixel_is_the_mean_over_its_square() {
+    for share in [0.02, 0.31, 0.98] {
+        let edge = 2.0 * share - 1.0;
+        for (max, what) in [([edge, 9.0, -1.0], "from the left"), ([9.0, edge, -1.0], "from below")]
+        {
+            let job = job(&format!(
+                "[render]\nwidth = 1\nheight = 1\n\
+                 [camera]\neye = [0, 0, 0]\ntarget = [0, 0, -1]\nvertical_fov = 90\n\
+                 [[materials]]\nname = 'm'\nemission = [1, 1, 1]\n\
+                 [[objects]]\ntype = 'box'\nmin = [-9, -9, -1.001]\nmax = {max:?}\nmaterial = 'm'\n"
+            ));
+            let found = mean(&film(&job, 4096)).x;
+            assert!((found - share).abs() < 2e-3, "{found} of {share} {what}");
+        }
     }
 }
 

@@ -54,8 +54,10 @@ fn a_bump_bends_the_normal_by_the_gradient_in_object_space() {
             let t = transform(place);
             let normal = t.world_from_object_normal(bent).normalize() * side;
             let flat = t.world_from_object_normal(DVec3::Y).normalize() * side;
-            // A sun off the bent normal, on the viewer's side.
-            let towards = (normal + 0.4 * flat.any_orthonormal_vector()).normalize();
+            // A sun far off the bent normal, the way that it is bent, on the viewer's side.
+            let aside = t.world_from_object_vector(DVec3::X);
+            let aside = (aside - flat * aside.dot(flat)).normalize();
+            let towards = (normal + 0.9 * aside).normalize();
             let body = format!(
                 "[[textures]]\nname = 't'\ntype = 'marble'\nscale = {scale}\n\
                  [[materials]]\nname = 'm'\ndiffuse = [1, 1, 1]\n\

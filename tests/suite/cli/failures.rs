@@ -252,6 +252,45 @@ fn without_a_display_the_window_says_so_in_one_line() {
     }
 }
 
+/// Some have a display that is none.
+#[test]
+fn a_display_that_does_not_answer_is_told_in_one_line() {
+    let place = Place::with_ball();
+    for (variable, value) in [("DISPLAY", ":4000"), ("WAYLAND_DISPLAY", "wayland-4000")] {
+        let mut command = place.command();
+        let run = Run::of(command.env(variable, value).env("XDG_RUNTIME_DIR", place.path("")));
+        assert_eq!(run.status, Some(1), "{variable}: {}", run.stderr);
+        assert_eq!(run.stderr.lines().count(), 1, "{variable}: {}", run.stderr);
+        assert!(run.stderr.contains("penumbra render"), "{variable}: {}", run.stderr);
+    }
+}
+
+#[test]
+fn a_mistake_of_the_program_leaves_a_report() {
+    let place = Place::with_ball();
+    let own = place.path("own");
+    let folders = [("XDG_DATA_HOME", &own), ("TMPDIR", &own)];
+    for number in ["crash-01.txt", "crash-02.txt"] {
+        let mut command = place.command();
+        command.args(["render", "ball.toml", "-o", "a.png"]).env("PENUMBRA_MISTAKE", "1");
+        let run = Run::of(command.envs(folders).env_remove("RUST_BACKTRACE"));
+        assert_eq!(run.status, Some(1), "{}", run.stderr);
+        let is_told =
+            run.stderr.starts_with("error: penumbra made a mistake: a mistake on purpose")
+                && run.stderr.contains(number)
+                && run.stderr.lines().count() == 1;
+        assert!(is_told, "{}", run.stderr);
+    }
+    let report = ["own/penumbra/crash-01.txt", "own/crash-01.txt"]
+        .iter()
+        .find_map(|name| std::fs::read_to_string(place.path(name)).ok())
+        .expect("a report");
+    for part in [env!("CARGO_PKG_VERSION"), "a mistake on purpose", "crash.rs:", "rehearse", BALL] {
+        assert!(report.contains(part), "{part} is missing:\n{report}");
+    }
+    assert!(!place.path("a.png").exists(), "a picture of a mistake");
+}
+
 #[test]
 fn help_and_version_are_no_errors() {
     let place = Place::new();

@@ -1,10 +1,13 @@
-//! Trees take no more memory than is reckoned with before they are built, whatever the mesh.
+//! Trees take no more memory than is reckoned with before they are built, whatever the mesh, and
+//! no more time than somebody waits for them.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::channel;
 
 use glam::Vec3;
 use penumbra::geometry::mesh::Mesh;
-use penumbra::geometry::{AcceleratorKind, TracedMesh};
+use penumbra::geometry::{AcceleratorKind, Stopped, TracedMesh};
 
 use crate::common::Numbers;
 
@@ -55,6 +58,7 @@ fn no_mesh_makes_a_tree_larger_than_is_reckoned_with() {
         let n_triangles = mesh.triangles.len() as u64;
         let traced = Arc::new(TracedMesh::new(mesh));
         for kind in AcceleratorKind::ALL {
+            traced.build_tree(kind, &AtomicBool::new(false)).unwrap();
             let n_bytes = traced.tree(kind).n_bytes() as u64;
             let reckoned = kind.bytes_a_triangle() * n_triangles;
             let most = match kind {
@@ -64,5 +68,32 @@ fn no_mesh_makes_a_tree_larger_than_is_reckoned_with() {
             let name = kind.name();
             assert!(n_bytes <= most, "{name}, {what}: {n_bytes} bytes where {most} are the most");
         }
+    }
+}
+
+/// Long before it would be finished: a million triangles take seconds.
+#[test]
+fn a_build_under_way_ends_when_nobody_wants_it() {
+    let mut numbers = Numbers::new(3);
+    let mut random = || Vec3::new(numbers.next() as f32, numbers.next() as f32, 0.5);
+    let corners = (0..1_000_000).flat_map(|_| {
+        let corner = random();
+        [corner, corner + Vec3::X * 1e-3, corner + Vec3::Y * 1e-3]
+    });
+    let traced = TracedMesh::new(mesh(corners.collect()));
+    for kind in [AcceleratorKind::WideBvh, AcceleratorKind::KdTree, AcceleratorKind::KdMidpoint] {
+        let stop = AtomicBool::new(false);
+        let (begin, begun) = channel();
+        let built = std::thread::scope(|scope| {
+            let builder = scope.spawn(|| {
+                begin.send(()).unwrap();
+                traced.build_tree(kind, &stop)
+            });
+            begun.recv().unwrap();
+            stop.store(true, Ordering::Relaxed);
+            builder.join().unwrap()
+        });
+        assert_eq!(built, Err(Stopped), "{}", kind.name());
+        assert!(!traced.has_tree(kind), "{}: half a tree", kind.name());
     }
 }

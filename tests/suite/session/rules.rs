@@ -82,11 +82,34 @@ fn another_scene_stops_the_preview_too() {
         assert!(!preview.is_stopped(), "an edit at {side} pixels a side");
         stage.session.abandon();
         assert!(preview.is_stopped(), "another scene at {side} pixels a side");
+        stage.submit(3, side, 1);
         preview.until_stopped();
-        let calls = stage.run_until(|status| status.generation == 2 && status.phase == Phase::Done);
-        let is_shown = stage.session.latest().is_some_and(|frame| seed_of(&frame.job) == 2);
+        let calls = stage.run_until(|status| status.generation == 3 && status.phase == Phase::Done);
+        let is_shown = stage.session.latest().is_some_and(|frame| seed_of(&frame.job) == 3);
         assert!(is_shown, "the next job has its picture after {} calls", calls.len());
     }
+}
+
+#[test]
+fn another_scene_and_closing_stop_the_building_of_trees() {
+    let stage = Stage::new();
+    stage.submit(1, SMALL, 1);
+    let prepare = stage.call();
+    assert_eq!(prepare.question, Question::Prepare, "trees come first");
+    stage.submit(2, SMALL, 1);
+    assert!(!prepare.is_stopped(), "an edit lets the trees be built");
+    stage.session.abandon();
+    assert!(prepare.is_stopped(), "another scene does not");
+    prepare.until_stopped();
+    stage.wait("end of the build", |session| session.status().phase == Phase::Idle);
+    stage.assert_asleep();
+    // The same again is new now.
+    stage.submit(2, SMALL, 1);
+    let calls = stage.run_until(|status| status.generation == 3 && status.phase == Phase::Done);
+    assert!(calls.iter().all(|call| call.seed == 2), "of what was given up: {calls:?}");
+    stage.submit(3, SMALL, 1);
+    stage.call().until_stopped();
+    drop(stage.session);
 }
 
 /// A drag at the pace of the renderer: every job gets its picture.

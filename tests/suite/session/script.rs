@@ -116,10 +116,9 @@ pub(super) struct ScriptedWorld {
 impl Renderer for Script {
     type World = ScriptedWorld;
 
-    fn prepare(&self, job: &RenderJob) -> ScriptedWorld {
-        // Preparing cannot be stopped.
-        let _ = self.ask(Question::Prepare, seed_of(job), &AtomicBool::new(false));
-        ScriptedWorld { world: World::new(job.clone()), is_coarse: false }
+    fn prepare(&self, job: &RenderJob, stop: &AtomicBool) -> Result<ScriptedWorld, Stopped> {
+        self.ask(Question::Prepare, seed_of(job), stop)?;
+        Ok(ScriptedWorld { world: World::new(job.clone()), is_coarse: false })
     }
 
     fn coarse(&self, world: &ScriptedWorld, scale: u32) -> ScriptedWorld {
