@@ -255,7 +255,7 @@ mod tests {
         let ctx = egui::Context::default();
         for (sequence, scale) in [(1, 1), (2, 4), (3, 1)] {
             let tone = ToneMappingDescription::default();
-            display.show(&frame(sequence, scale), View::Picture, &tone);
+            display.show(&ctx, &frame(sequence, scale), View::Picture, &tone);
             woken.recv().unwrap();
             display.update(&ctx);
             let side = 16 / scale as usize;
