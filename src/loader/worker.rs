@@ -223,7 +223,7 @@ fn build_trees(assets: &Assets, stop: &AtomicBool, told: &Told<'_>) -> Result<()
         }
         told(&key.file, Step::Tree);
         if let Ok(pool) = threads::background_pool("trees", threads::available()) {
-            pool.install(|| mesh.tree(kind));
+            pool.install(|| mesh.build_tree(kind, stop)).map_err(|_| LoadError::Cancelled)?;
         }
     }
     Ok(())
