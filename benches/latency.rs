@@ -2,14 +2,16 @@
 //! full-resolution sample.
 //!
 //! ```text
-//! cargo bench --bench latency
+//! cargo bench --bench latency [-- window] [edits] [tones]
 //! ```
 //!
-//! Drives the session as the window does, at 1280 x 720, with one render thread less than there are
+//! Without a name of a part, all of them, the window first.
+//!
+//! `edits` drives the session as the window does, at 1280 x 720, with one render thread less than there are
 //! processors: light size, roughness, aperture and camera of the final scene and of a mesh of
 //! 100 000 triangles, one edit after the other. One JSON line for each scene and kind of edit, in
-//! milliseconds; the cost of tone mapping one picture; and, on Linux, what the window's own thread
-//! spends on its frames.
+//! milliseconds. `tones` is the cost of tone mapping one picture. `window` (on Linux) is what the
+//! window's own thread spends on its frames.
 #![expect(clippy::print_stdout, reason = "a bench prints its figures")]
 
 #[cfg(all(feature = "window", target_os = "linux"))]
@@ -39,7 +41,29 @@ const N_EDITS: u32 = 12;
 
 type Edit = fn(&mut SceneDescription, f64);
 
+const PARTS: [&str; 3] = ["window", "edits", "tones"];
+
 fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // Cargo adds an option of its own.
+    let asked: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
+    if let Some(unknown) = asked.iter().find(|word| !PARTS.contains(&word.as_str())) {
+        return Err(format!("there is no part {unknown:?}; there are {}", PARTS.join(", ")).into());
+    }
+    let is_asked = |part: &str| asked.is_empty() || asked.iter().any(|word| word == part);
+    #[cfg(all(feature = "window", target_os = "linux"))]
+    if is_asked("window") {
+        window::measure()?;
+    }
+    if is_asked("edits") {
+        edits()?;
+    }
+    if is_asked("tones") {
+        tone_mapping();
+    }
+    Ok(())
+}
+
+fn edits() -> Result<(), Box<dyn std::error::Error>> {
     let signal = Arc::new((Mutex::new(0_u64), Condvar::new()));
     let theirs = Arc::clone(&signal);
     let n_threads = penumbra::threads::available().saturating_sub(1).max(1);
@@ -83,9 +107,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             );
         }
     }
-    tone_mapping();
-    #[cfg(all(feature = "window", target_os = "linux"))]
-    window::measure()?;
     Ok(())
 }
 

@@ -10,6 +10,7 @@ use std::sync::atomic::AtomicBool;
 use crate::io::files::{FileError, read_file};
 use crate::io::folder::{FileRecord, Folder, LARGEST_ASSET};
 use crate::io::obj::ObjError;
+use crate::io::progress::Step;
 use crate::io::scene_file::{self, LARGEST_FILE, Override, OverrideError, SceneFileError, Section};
 use crate::io::snapshot::{self, RenderRecord, SnapshotError};
 use crate::io::{crash, gallery, printable_path};
@@ -22,6 +23,9 @@ mod worker;
 
 use reading::{AssetFailure, Reading};
 pub use worker::{LoadProgress, Loader};
+
+/// Hears of a file, as the scene names it, what is being done with it.
+type Told<'a> = dyn Fn(&str, Step) + 'a;
 
 /// What is opened.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -132,14 +136,24 @@ pub fn load(
     overrides: &[Override],
     is_cancelled: &AtomicBool,
 ) -> Result<Loaded, LoadError> {
-    let opened = Opened::open(source, is_cancelled)?;
+    load_telling(source, overrides, is_cancelled, &|_, _| ())
+}
+
+/// [`load`] that says of each file how far it is.
+fn load_telling(
+    source: &Source,
+    overrides: &[Override],
+    stop: &AtomicBool,
+    told: &Told<'_>,
+) -> Result<Loaded, LoadError> {
+    let opened = Opened::open(source, stop, told)?;
     let scene_error = |error| match error {
         SceneFileError::Override(error) => LoadError::Override(error),
         error => LoadError::Scene { name: opened.name.clone(), error },
     };
     crash::note_scene(opened.text.as_str());
     let description = scene_file::parse(&opened.text, overrides).map_err(scene_error)?;
-    let mut reading = Reading::new(&opened.folder, is_cancelled);
+    let mut reading = Reading::new(&opened.folder, stop, told);
     reading.report.extend(opened.report.iter().cloned());
     reading.assets.meshes.extend(opened.mesh.clone());
     reading.records.extend(opened.mesh_files.iter().cloned());
@@ -164,13 +178,14 @@ pub fn load(
 ///
 /// # Errors
 /// The parameter's path and what is wrong with its file.
-pub fn load_missing(
+fn load_missing(
     description: &SceneDescription,
     folder: &Folder,
     assets: &Assets,
-    is_cancelled: &AtomicBool,
+    stop: &AtomicBool,
+    told: &Told<'_>,
 ) -> Result<(Assets, Vec<FileRecord>, Vec<String>), String> {
-    let mut reading = Reading::new(folder, is_cancelled);
+    let mut reading = Reading::new(folder, stop, told);
     reading.assets = assets.clone();
     match reading.all_of(description) {
         Ok(()) => Ok((reading.assets, reading.records, reading.report)),
@@ -199,7 +214,7 @@ struct Opened {
 }
 
 impl Opened {
-    fn open(source: &Source, is_cancelled: &AtomicBool) -> Result<Self, LoadError> {
+    fn open(source: &Source, stop: &AtomicBool, told: &Told<'_>) -> Result<Self, LoadError> {
         let path = match source {
             Source::Gallery(name) => {
                 let text = gallery::scene_text(name)
@@ -221,7 +236,7 @@ impl Opened {
             return Ok(opened);
         }
         if has_ending("obj") {
-            return Self::mesh(name, path, &bytes, is_cancelled);
+            return Self::mesh(name, path, &bytes, stop, told);
         }
         let text = scene_file::text_of(bytes)
             .map_err(|error| LoadError::Scene { name: name.clone(), error })?;
@@ -245,11 +260,12 @@ impl Opened {
         name: String,
         path: &Path,
         bytes: &[u8],
-        is_cancelled: &AtomicBool,
+        stop: &AtomicBool,
+        told: &Told<'_>,
     ) -> Result<Self, LoadError> {
         let file = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
         let folder = Folder::of(path);
-        let mut reading = Reading::new(&folder, is_cancelled);
+        let mut reading = Reading::new(&folder, stop, told);
         let mut description = framing::scene_around(&file, None);
         let key = description.objects.first().and_then(MeshKey::of);
         let Some(key) = key else { return Err(LoadError::NotInGallery(name)) };

@@ -38,6 +38,11 @@ impl Document {
         Self { description, path, saved, history }
     }
 
+    /// A scene that no file of its own holds: it differs from `saved` until it is saved.
+    pub fn unsaved(description: SceneDescription, saved: SceneDescription) -> Self {
+        Self { saved, ..Self::new(description, None) }
+    }
+
     /// The file that it was read from or last saved to.
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
@@ -220,6 +225,18 @@ mod tests {
         assert_eq!(document.path(), Some(Path::new("b.toml")), "path");
         document.undo();
         assert!(document.is_dirty(), "undone behind the save");
+    }
+
+    #[test]
+    fn a_scene_without_a_file_is_dirty_until_it_is_saved() {
+        let Document { description, .. } = document();
+        let mut other = description.clone();
+        other.render.samples = 7;
+        let mut document = Document::unsaved(description, other);
+        assert!(document.is_dirty(), "restored");
+        assert_eq!(document.undo(), None, "there is nothing before it");
+        document.mark_saved("b.toml");
+        assert!(!document.is_dirty(), "saved");
     }
 
     #[test]

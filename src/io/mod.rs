@@ -10,6 +10,7 @@ pub mod memory;
 pub mod mtl;
 pub mod obj;
 pub mod output;
+pub mod progress;
 pub mod scene_file;
 pub mod snapshot;
 

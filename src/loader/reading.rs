@@ -9,8 +9,10 @@ use crate::geometry::TracedMesh;
 use crate::io::files::FileError;
 use crate::io::folder::{FileRecord, Folder};
 use crate::io::obj::{self, ObjError};
+use crate::io::progress::{Step, Watch};
 use crate::io::scene_file::Section;
 use crate::io::{excerpt, image_file, mtl};
+use crate::loader::Told;
 use crate::scene::assets::{Assets, MeshAsset, MeshKey, SlotMaterial};
 use crate::scene::description::{ObjectKind, SceneDescription, TextureKind};
 use crate::scene::image::Image;
@@ -18,7 +20,8 @@ use crate::scene::image::Image;
 /// The files of one scene on their way in; each is read once.
 pub(super) struct Reading<'a> {
     folder: &'a Folder,
-    is_cancelled: &'a AtomicBool,
+    stop: &'a AtomicBool,
+    told: &'a Told<'a>,
     pub(super) assets: Assets,
     pub(super) records: Vec<FileRecord>,
     pub(super) report: Vec<String>,
@@ -33,10 +36,11 @@ pub(super) enum AssetFailure {
 }
 
 impl<'a> Reading<'a> {
-    pub(super) fn new(folder: &'a Folder, is_cancelled: &'a AtomicBool) -> Self {
+    pub(super) fn new(folder: &'a Folder, stop: &'a AtomicBool, told: &'a Told<'a>) -> Self {
         Self {
             folder,
-            is_cancelled,
+            stop,
+            told,
             assets: Assets { meshes: HashMap::new(), images: HashMap::new() },
             records: Vec::new(),
             report: Vec::new(),
@@ -83,13 +87,14 @@ impl<'a> Reading<'a> {
     }
 
     fn check_cancelled(&self) -> Result<(), AssetFailure> {
-        if self.is_cancelled.load(Ordering::Relaxed) {
+        if self.stop.load(Ordering::Relaxed) {
             return Err(AssetFailure::Cancelled);
         }
         Ok(())
     }
 
     fn read(&mut self, file: &str) -> Result<Vec<u8>, FileError> {
+        (self.told)(file, Step::Reading(0.0));
         let bytes = self.folder.read(file)?;
         if !self.records.iter().any(|record| record.file == file) {
             self.records.push(FileRecord::of(file, &bytes));
@@ -120,8 +125,9 @@ impl<'a> Reading<'a> {
 
     /// The mesh with its libraries' materials; whatever is wrong with those is reported only.
     pub(super) fn mesh_of(&mut self, key: &MeshKey, bytes: &[u8]) -> Result<MeshAsset, ObjError> {
-        let (mesh, notes) =
-            obj::load_mesh(bytes, key.normals, key.crease_angle_deg(), self.is_cancelled)?;
+        let told = |step| (self.told)(&key.file, step);
+        let watch = Watch::new(self.stop, &told);
+        let (mesh, notes) = obj::load_mesh(bytes, key.normals, key.crease_angle_deg(), watch)?;
         let label = excerpt(key.file.as_bytes());
         let beside = Path::new(&key.file).parent().unwrap_or(Path::new("")).to_owned();
         let named = |path: &Path| beside.join(path).to_string_lossy().into_owned();

@@ -5,10 +5,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
-use crate::io::folder::{FileRecord, Folder};
-use crate::loader::{LoadError, Loaded, Source, load, load_missing};
+use crate::geometry::AcceleratorKind;
+use crate::io::memory;
+use crate::io::progress::Step;
+use crate::loader::{LoadError, Loaded, Source, Told, load_missing, load_telling};
 use crate::scene::Assets;
-use crate::scene::description::SceneDescription;
 use crate::threads;
 
 /// A thread that loads files. Dropping it cancels and waits.
@@ -19,12 +20,17 @@ pub struct Loader {
 }
 
 /// What the loader is doing.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum LoadProgress {
     /// Nothing.
     Idle,
     /// Reading and preparing this.
-    Loading(Source),
+    Loading {
+        /// What is opened.
+        source: Source,
+        /// The file at work, as the scene names it, and what is being done with it.
+        step: Option<(String, Step)>,
+    },
 }
 
 #[derive(Debug)]
@@ -36,9 +42,17 @@ struct Shared {
 #[derive(Debug, Default)]
 struct State {
     request: Option<Request>,
-    current: Option<(Source, Arc<AtomicBool>)>,
+    current: Option<Current>,
     result: Option<Result<Loaded, LoadError>>,
     is_closing: bool,
+}
+
+/// What the thread is at.
+#[derive(Debug)]
+struct Current {
+    source: Source,
+    stop: Arc<AtomicBool>,
+    step: Option<(String, Step)>,
 }
 
 #[derive(Debug)]
@@ -85,17 +99,24 @@ impl Loader {
     pub fn cancel(&self) {
         let mut state = self.shared.lock();
         state.request = None;
-        if let Some((_, stop)) = state.current.take() {
-            stop.store(true, Ordering::Relaxed);
+        state.result = None;
+        if let Some(current) = state.current.take() {
+            current.stop.store(true, Ordering::Relaxed);
         }
     }
 
     /// What is being loaded.
     pub fn progress(&self) -> LoadProgress {
         let state = self.shared.lock();
-        let waiting = state.request.as_ref().map(Request::source);
-        let source = waiting.or(state.current.as_ref().map(|(source, _)| source));
-        source.map_or(LoadProgress::Idle, |source| LoadProgress::Loading(source.clone()))
+        match (&state.request, &state.current) {
+            (Some(request), _) => {
+                LoadProgress::Loading { source: request.source().clone(), step: None }
+            }
+            (None, Some(current)) => {
+                LoadProgress::Loading { source: current.source.clone(), step: current.step.clone() }
+            }
+            (None, None) => LoadProgress::Idle,
+        }
     }
 
     /// The newest result, once.
@@ -105,8 +126,8 @@ impl Loader {
 
     fn request(&self, request: Request) {
         let mut state = self.shared.lock();
-        if let Some((_, stop)) = &state.current {
-            stop.store(true, Ordering::Relaxed);
+        if let Some(current) = &state.current {
+            current.stop.store(true, Ordering::Relaxed);
         }
         state.request = Some(request);
         state.result = None;
@@ -141,9 +162,18 @@ impl Shared {
             }
             let Some(request) = state.request.take() else { continue };
             let stop = Arc::new(AtomicBool::new(false));
-            state.current = Some((request.source().clone(), Arc::clone(&stop)));
+            let source = request.source().clone();
+            state.current = Some(Current { source, stop: Arc::clone(&stop), step: None });
             drop(state);
-            let served = catch_unwind(AssertUnwindSafe(|| serve(request, &stop)));
+            let told = |file: &str, step| {
+                let mut state = self.lock();
+                if let Some(current) = &mut state.current
+                    && Arc::ptr_eq(&current.stop, &stop)
+                {
+                    current.step = Some((file.to_owned(), step));
+                }
+            };
+            let served = catch_unwind(AssertUnwindSafe(|| serve(request, &stop, &told)));
             let result =
                 served.unwrap_or_else(|panic| Err(LoadError::Failed(threads::panic_text(&*panic))));
             let mut state = self.lock();
@@ -158,30 +188,81 @@ impl Shared {
     }
 }
 
-fn serve(request: Request, stop: &AtomicBool) -> Result<Loaded, LoadError> {
-    match request {
-        Request::Open(source) => load(&source, &[], stop),
+fn serve(request: Request, stop: &AtomicBool, told: &Told<'_>) -> Result<Loaded, LoadError> {
+    let loaded = match request {
+        Request::Open(source) => load_telling(&source, &[], stop, told)?,
         Request::Complete(mut loaded) => {
+            let Loaded { description, folder, assets, .. } = &*loaded;
             let (assets, files, report) =
-                missing(&loaded.description, &loaded.folder, &loaded.assets, stop)?;
+                load_missing(description, folder, assets, stop, told).map_err(LoadError::Edit)?;
             loaded.assets = assets;
             for file in files {
                 loaded.files.retain(|known| known.file != file.file);
                 loaded.files.push(file);
             }
             loaded.report = report;
-            Ok(*loaded)
+            *loaded
         }
-    }
+    };
+    build_trees(&loaded.assets, stop, told)?;
+    Ok(loaded)
 }
 
-type Missing = (Assets, Vec<FileRecord>, Vec<String>);
+/// Builds the trees that a picture will ask for, so that the scene before is there until then.
+fn build_trees(assets: &Assets, stop: &AtomicBool, told: &Told<'_>) -> Result<(), LoadError> {
+    let kind = AcceleratorKind::default();
+    for (key, asset) in &assets.meshes {
+        if stop.load(Ordering::Relaxed) {
+            return Err(LoadError::Cancelled);
+        }
+        let mesh = &asset.traced;
+        let n_bytes = mesh.mesh.triangles.len() as u64 * kind.bytes_a_triangle();
+        // Where memory or threads are missing, the renderer says so when it needs the tree.
+        if mesh.has_tree(kind) || memory::check(n_bytes).is_err() {
+            continue;
+        }
+        told(&key.file, Step::Tree);
+        if let Ok(pool) = threads::background_pool("trees", threads::available()) {
+            pool.install(|| mesh.build_tree(kind, stop)).map_err(|_| LoadError::Cancelled)?;
+        }
+    }
+    Ok(())
+}
 
-fn missing(
-    description: &SceneDescription,
-    folder: &Folder,
-    assets: &Assets,
-    stop: &AtomicBool,
-) -> Result<Missing, LoadError> {
-    load_missing(description, folder, assets, stop).map_err(LoadError::Edit)
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::RefCell;
+
+    #[test]
+    fn a_mesh_comes_with_its_tree_and_each_step_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.obj");
+        std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+        let steps = RefCell::new(Vec::new());
+        let told = |file: &str, step| steps.borrow_mut().push((file.to_owned(), step));
+        let request = || Request::Open(Source::File(path.clone()));
+        let loaded = serve(request(), &AtomicBool::new(false), &told).unwrap();
+        let expected = [Step::Normals, Step::Tree].map(|step| ("a.obj".to_owned(), step));
+        assert_eq!(steps.into_inner(), expected, "other steps");
+        let kind = AcceleratorKind::default();
+        let mut meshes = loaded.assets.meshes.values();
+        assert!(meshes.all(|mesh| mesh.traced.has_tree(kind)), "a tree is still to be built");
+        let stopped = serve(request(), &AtomicBool::new(true), &|_, _| ());
+        assert!(matches!(stopped, Err(LoadError::Cancelled)), "loaded though cancelled");
+    }
+
+    #[test]
+    fn what_is_cancelled_never_comes_even_if_it_was_ready() {
+        let (sender, woken) = std::sync::mpsc::channel();
+        let loader = Loader::new(move || sender.send(()).unwrap()).unwrap();
+        loader.open(Source::Gallery("pyramid"));
+        woken.recv().unwrap();
+        loader.cancel();
+        assert!(loader.take().is_none(), "the cancelled scene came");
+        assert_eq!(loader.progress(), LoadProgress::Idle, "still at it");
+        loader.open(Source::Gallery("pyramid"));
+        woken.recv().unwrap();
+        assert!(loader.take().is_some(), "nothing is loaded any more");
+    }
 }

@@ -202,7 +202,7 @@ impl<R: Renderer> Driver<'_, R> {
             status.goal_samples = goal.samples;
             status.seconds = 0.0;
             status.seconds_left = None;
-            status.noise_percent = None;
+            status.noise = None;
             status.n_invalid = 0;
         });
         if let Err(error) = admit(&job) {
@@ -356,7 +356,7 @@ impl<R: Renderer> Driver<'_, R> {
             status.samples = work.film.n_samples();
             status.goal_samples = goal.samples;
             status.seconds = work.seconds;
-            status.noise_percent = work.film.noise_percent();
+            status.noise = work.film.noise();
             status.n_invalid = work.n_invalid;
             status.rays_per_second = self.rays_per_second;
             status.seconds_left = goal.seconds_left(&work.film, work.seconds);
@@ -392,7 +392,7 @@ impl<R: Renderer> Driver<'_, R> {
             scale,
             picture: film.picture(),
             samples: film.n_samples(),
-            noise_percent: film.noise_percent(),
+            noise: film.noise(),
             maps: Maps { sampling, ..work.maps.clone() },
         }
     }

@@ -240,7 +240,7 @@ impl App {
             let view = self.interface.display.view;
             self.picture.show(ctx, &frame, view, &self.document.description.tone_mapping);
             if frame.scale == 1 {
-                self.work.note_noise(frame.generation, frame.samples, frame.noise_percent);
+                self.work.note_noise(frame.generation, frame.samples, frame.noise);
             }
             self.take_snapshot(ctx, &frame);
         }

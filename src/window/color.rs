@@ -1,7 +1,8 @@
 //! Editing colours: linear RGB in the description, shown through the sRGB transfer.
 
+use super::parameter::parameter;
 use super::theme::ROW_HEIGHT;
-use super::widgets::{Figure, number_box, parameter, row};
+use super::widgets::{Figure, number_box, row};
 use crate::scene::description::Triple;
 use egui::ecolor::Hsva;
 use egui::{Color32, Rgba, Sense, Stroke, StrokeKind, Ui, Vec2};

@@ -208,4 +208,17 @@ mod tests {
             "other lines"
         );
     }
+
+    #[test]
+    fn what_is_gone_and_what_is_new_is_said_to_be() {
+        let mut then = small_scene();
+        let mut now = then.clone();
+        then.camera.focal_distance = Some(4.0);
+        now.lights[0].name = "rim".to_owned();
+        let found = differences(&then, &now);
+        let says = |text: &str| found.iter().any(|difference| difference.line == text);
+        assert!(says("camera.focal_distance: gone, was 4.0"), "{found:?}");
+        assert!(says("lights.rim.visible: new, true"), "{found:?}");
+        assert!(says("lights.key.visible: gone, was true"), "{found:?}");
+    }
 }

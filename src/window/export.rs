@@ -2,19 +2,19 @@
 //! the clipboard. The same way to a file as `penumbra render`.
 
 use super::app::App;
-use super::output::{pictures_folder, write_numbered};
+use super::export_settings::Destination;
+use super::output::write_numbered;
 use super::panels::Limits;
 use crate::io::folder::{FileRecord, Folder};
 use crate::io::output::OutputFormat;
 use crate::io::snapshot;
-use crate::render::{RenderJob, World};
+use crate::render::{Noise, RenderJob, World};
 use crate::scene::description::SceneDescription;
 use crate::session::Goal;
 use crate::session::develop::{DevelopError, develop, encode};
 use crate::threads;
 use crate::tone_mapping::srgb_bytes;
 use egui::{Color32, ColorImage};
-use serde::{Deserialize, Serialize};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,91 +23,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Instant;
 
-/// How large the rendered picture is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum ExportSize {
-    /// As many pixels as the live picture has.
-    #[default]
-    Live,
-    /// Twice as many along each side.
-    Double,
-    /// 3840 x 2160.
-    Uhd,
-    /// As typed.
-    Custom,
-}
-
-/// Where the rendered picture goes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum Destination {
-    /// A file under a new number.
-    #[default]
-    File,
-    /// The clipboard, tone-mapped.
-    Clipboard,
-}
-
-/// What is set in the box, and remembered.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub(super) struct ExportSettings {
-    /// Which size.
-    pub(super) size: ExportSize,
-    /// Width and height in pixels where the size is [`ExportSize::Custom`].
-    pub(super) custom: [u32; 2],
-    /// Samples a pixel; `None` is what the scene says.
-    #[serde(skip)]
-    pub(super) samples: Option<u32>,
-    /// What may end it before its samples are reached.
-    #[serde(skip)]
-    pub(super) limits: Limits,
-    /// Kind of file.
-    pub(super) format: OutputFormat,
-    /// File or clipboard.
-    pub(super) destination: Destination,
-    /// Folder of the file; `None` is the user's pictures.
-    pub(super) folder: Option<PathBuf>,
-}
-
-impl Default for ExportSettings {
-    fn default() -> Self {
-        Self {
-            size: ExportSize::Live,
-            custom: [1920, 1080],
-            samples: None,
-            limits: Limits::default(),
-            format: OutputFormat::Png,
-            destination: Destination::File,
-            folder: None,
-        }
-    }
-}
-
-impl ExportSettings {
-    /// Width and height in pixels, beside a live picture of that size.
-    pub(super) fn pixels(&self, live: [u32; 2]) -> [u32; 2] {
-        let held = |n: u32| n.clamp(1, 16384);
-        match self.size {
-            ExportSize::Live => live,
-            ExportSize::Double => live.map(|n| held(n * 2)),
-            ExportSize::Uhd => [3840, 2160],
-            ExportSize::Custom => self.custom.map(held),
-        }
-    }
-
-    /// Where files go.
-    pub(super) fn folder(&self) -> PathBuf {
-        self.folder.clone().unwrap_or_else(pictures_folder)
-    }
-}
-
 /// How far a picture is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ExportProgress {
     /// Samples so far, and at the end.
     pub(super) samples: (u32, u32),
-    /// Estimated noise in percent.
-    pub(super) noise_percent: Option<f64>,
+    /// Estimated noise.
+    pub(super) noise: Option<Noise>,
     /// Estimated seconds to the end.
     pub(super) seconds_left: Option<f64>,
 }
@@ -199,7 +121,7 @@ impl Exporter {
         let stop = Arc::new(AtomicBool::new(false));
         let progress = Arc::new(Mutex::new(ExportProgress {
             samples: (0, order.goal.samples),
-            noise_percent: None,
+            noise: None,
             seconds_left: None,
         }));
         let (sender, result) = channel();
@@ -252,7 +174,7 @@ fn make(
         let seconds = start.elapsed().as_secs_f64();
         tell(ExportProgress {
             samples: (film.n_samples(), order.goal.samples),
-            noise_percent: film.noise_percent(),
+            noise: film.noise(),
             seconds_left: order.goal.seconds_left(film, seconds),
         });
     });
@@ -262,7 +184,7 @@ fn make(
         Err(error) => return Exported::Failed(error.to_string()),
     };
     let (width, height, n_samples) = (film.width(), film.height(), film.n_samples());
-    let seconds = super::status::duration(start.elapsed().as_secs_f64());
+    let seconds = super::figures::duration(start.elapsed().as_secs_f64());
     let told = format!("{width}×{height}, {n_samples} samples, {seconds}");
     let tone = &order.description.tone_mapping;
     if order.destination == Destination::Clipboard {
@@ -338,23 +260,4 @@ impl App {
 /// The name that a picture will have, as far as it is known.
 pub(super) fn file_pattern(title: &str, folder: &Path, format: OutputFormat) -> String {
     folder.join(format!("{title}-001.{}", format.ending())).display().to_string()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sizes_follow_the_live_picture_or_what_was_typed() {
-        let mut settings = ExportSettings { custom: [0, 20_000], ..ExportSettings::default() };
-        for (size, pixels) in [
-            (ExportSize::Live, [800, 500]),
-            (ExportSize::Double, [1600, 1000]),
-            (ExportSize::Uhd, [3840, 2160]),
-            (ExportSize::Custom, [1, 16384]),
-        ] {
-            settings.size = size;
-            assert_eq!(settings.pixels([800, 500]), pixels, "{size:?}");
-        }
-    }
 }

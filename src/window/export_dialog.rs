@@ -1,11 +1,12 @@
 //! The box that renders a picture to a file. It stays open beside the live picture.
 
-use super::export::{Destination, ExportProgress, ExportSettings, ExportSize, file_pattern};
+use super::export::{ExportProgress, file_pattern};
+use super::export_settings::{Destination, ExportSettings, ExportSize};
 use super::fields::entered_text;
+use super::figures::{duration, noise_text};
 use super::panels::limits_ui;
-use super::status::duration;
 use super::theme::ROW_HEIGHT;
-use super::widgets::{Figure, choice, row, short};
+use super::widgets::{Figure, choice, row};
 use crate::io::output::OutputFormat;
 use egui::{Id, RichText, Ui};
 use std::path::{Path, PathBuf};
@@ -175,13 +176,13 @@ fn foot(ui: &mut Ui, facts: &ExportFacts<'_>) -> Option<ExportChoice> {
     }
 }
 
-/// "48/256 · noise 2.1 % · 12 s left".
+/// "48/256 · noise 2.1 ± 0.2 % · 12 s left".
 fn progress_text(progress: &ExportProgress) -> String {
     let (now, goal) = progress.samples;
     if now == 0 {
         return "preparing".to_owned();
     }
-    let noise = progress.noise_percent.map(|noise| format!(" · noise {} %", short(noise)));
+    let noise = progress.noise.map(|noise| format!(" · noise {}", noise_text(noise)));
     let left = progress.seconds_left.map(|left| format!(" · {} left", duration(left)));
     format!("{now}/{goal}{}{}", noise.unwrap_or_default(), left.unwrap_or_default())
 }

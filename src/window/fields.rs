@@ -1,6 +1,7 @@
 //! A field for a line of text that counts once it is entered, not at every letter.
 
-use super::widgets::{parameter, row};
+use super::parameter::parameter;
+use super::widgets::row;
 use egui::{Key, Ui};
 
 /// A named line with a text field. Gives back what was entered, where it differs from `value` and

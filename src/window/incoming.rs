@@ -3,11 +3,15 @@
 use super::app::{App, empty_scene};
 use super::files::{Written, file_title};
 use super::panels::PickFor;
+use super::probe::{described, part_of};
+use super::status::Probed;
+use super::structure::Part;
 use super::viewport::Click;
 use crate::document::Document;
 use crate::loader::{LoadError, Loaded, Source};
+use crate::render::Feature;
 use crate::scene::Assets;
-use crate::scene::description::SceneDescription;
+use crate::scene::description::{ColorOrTexture, SceneDescription};
 use crate::scene::resolve::ResolveError;
 use egui::ViewportCommand;
 use std::path::PathBuf;
@@ -60,16 +64,16 @@ impl App {
     /// Answers the question that a click in the picture asked of the renderer.
     pub(super) fn take_pick(&mut self, scene: &mut SceneDescription) {
         let Some(picked) = self.work.session.take_picked() else { return };
-        let asked = self.awaited_click.filter(|click| {
-            let (Click::For(_, x, y) | Click::TurnAbout(x, y)) = *click;
-            (x, y) == (picked.x, picked.y)
-        });
+        let asked = self.awaited_click.filter(|click| click.at() == (picked.x, picked.y));
         let Some(click) = asked else {
             self.probe.take(&picked, scene, &self.work.assets, self.picture_size()[1]);
             return;
         };
         self.awaited_click = None;
         let Some(pick) = picked.pick else {
+            if matches!(click, Click::Choose(..)) {
+                return;
+            }
             self.toasts.say("there is nothing under the cursor");
             return;
         };
@@ -81,6 +85,7 @@ impl App {
                 self.interface.navigation.pivot = Some(point);
                 self.toasts.say("the camera turns about this point now");
             }
+            (Click::Choose(..), _) => self.choose(scene, &pick.feature),
             (Click::For(PickFor::Focus, ..), _) => scene.camera.focal_distance = Some(depth),
             (Click::For(PickFor::LightTarget, ..), Some(light)) => light.target = point,
             (Click::For(PickFor::LightPosition, ..), Some(light)) => {
@@ -91,6 +96,31 @@ impl App {
             (Click::For(PickFor::LightTarget | PickFor::LightPosition, ..), None) => {}
         }
         self.gesture.next();
+    }
+
+    /// Shows in the panel what was clicked on: the light, or the object with what it is made of.
+    fn choose(&mut self, scene: &SceneDescription, feature: &Feature) {
+        let selection = &mut self.interface.selection;
+        let told = described(feature, scene, &self.work.assets, 1);
+        match part_of(feature, scene) {
+            None => return,
+            Some((Part::Light, index)) => selection.light = index,
+            Some((_, index)) => {
+                selection.object = index;
+                let mut materials = scene.materials.iter();
+                if let Some(index) = materials.position(|one| one.name == told.material) {
+                    selection.material = index;
+                    if let ColorOrTexture::Texture(name) = &scene.materials[index].diffuse {
+                        let mut textures = scene.textures.iter();
+                        let texture = textures.position(|texture| texture.name == *name);
+                        selection.texture = texture.unwrap_or(selection.texture);
+                    }
+                }
+            }
+        }
+        let Probed { object, material, .. } = told;
+        let made_of = if material.is_empty() { String::new() } else { format!(" and {material}") };
+        self.toasts.say(format!("the panel shows {object}{made_of}"));
     }
 
     /// Opens a file that was dropped on the window.
@@ -112,7 +142,9 @@ impl App {
         self.files.missing = None;
         self.files.records = files;
         self.files.scene_path = None;
-        if let Source::File(path) = &source {
+        if let Source::File(path) = &source
+            && !self.recovery.is_copy(&source)
+        {
             self.interface.remember_file(path.clone());
             if path.extension().is_some_and(|ending| ending == "toml") {
                 self.files.scene_path = Some(path.clone());
@@ -133,7 +165,13 @@ impl App {
         self.awaited_click = None;
         self.work.session.abandon();
         self.work.set_assets(Arc::new(assets));
-        self.document = Document::new(description, self.files.scene_path.clone());
+        self.document = if self.recovery.is_copy(&source) {
+            // No file of the user's holds it.
+            self.recovery.note_restored();
+            Document::unsaved(description, empty_scene())
+        } else {
+            Document::new(description, self.files.scene_path.clone())
+        };
         self.gesture.next();
         self.watch_files();
         ctx.send_viewport_cmd(ViewportCommand::Title(format!("{} – Penumbra", self.files.title)));

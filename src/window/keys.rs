@@ -149,6 +149,7 @@ pub(super) const MOTIONS: &[(&str, &str)] = &[
     ("wheel, Ctrl + right drag", "nearer, farther"),
     ("right drag", "look about"),
     ("right drag with W A S D, Q E", "fly"),
+    ("left click", "its object and material in the panel"),
     ("Ctrl + left click", "focus here"),
     ("double click", "orbit about this point"),
     ("drop a file", "open it"),

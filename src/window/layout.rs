@@ -1,17 +1,18 @@
 //! Where things are in the window: bars, panel, picture. All of them edit one description in place.
 
 use super::app::{App, ViewportFacts};
+use super::figures::bytes_text;
 use super::handles::lights_in_picture;
 use super::keys::Action;
 use super::loupe::{LoupeFacts, loupe_ui};
 use super::panels::{self, Convergence, RenderFacts};
+use super::parameter::take_reset;
 use super::probe::described;
 use super::start::start_ui;
-use super::status::{PixelUnderCursor, StatusLine, Work, status_ui};
+use super::status::{PixelUnderCursor, StatusLine, Work, loading_ui, status_ui};
 use super::toolbar::{ToolbarChoice, ToolbarFacts, toolbar_ui};
-use super::viewport::{Click, ViewportOutput, physical_size, viewport_ui};
+use super::viewport::{ViewportOutput, physical_size, viewport_ui};
 use super::views::legend_ui;
-use super::widgets::take_reset;
 use super::work::picture_size;
 use crate::geometry::{AcceleratorKind, TreeStatistics};
 use crate::scene::description::SceneDescription;
@@ -71,6 +72,7 @@ impl App {
             start_shown: self.interface.start_shown,
             keys: &self.keys,
             picture: self.exporter.progress(),
+            view: self.interface.display.view,
             recent: &self.interface.recent,
         };
         let display = &mut self.interface.display;
@@ -89,23 +91,13 @@ impl App {
             .exact_size(26.0)
             .frame(egui::Frame::side_top_panel(ui.style()).inner_margin(margin))
             .show(ui, |ui| {
-                if self.files.loading.is_some() {
-                    self.loading_ui(ui);
-                } else {
-                    status_ui(ui, &line, pixel, self.probe.answer());
+                let Some(name) = &self.files.loading else {
+                    return status_ui(ui, &line, pixel, self.probe.answer());
+                };
+                if loading_ui(ui, name, &self.files.loader.progress()) {
+                    self.files.cancel_loading();
                 }
             });
-    }
-
-    fn loading_ui(&mut self, ui: &mut Ui) {
-        let name = self.files.loading.clone().unwrap_or_default();
-        ui.horizontal_centered(|ui| {
-            ui.spinner();
-            ui.label(egui::RichText::new(format!("loading {name}")).strong());
-            if ui.button("Cancel").on_hover_text("keeps the scene that is open (Esc)").clicked() {
-                self.files.cancel_loading();
-            }
-        });
     }
 
     fn panel_ui(&mut self, ui: &mut Ui, scene: &mut SceneDescription) {
@@ -190,7 +182,7 @@ impl App {
             self.interface.picking,
         );
         if let Some(click) = output.click {
-            let (Click::For(_, x, y) | Click::TurnAbout(x, y)) = click;
+            let (x, y) = click.at();
             self.work.session.pick(x, y);
             self.awaited_click = Some(click);
             self.interface.picking = None;
@@ -278,7 +270,7 @@ impl App {
         StatusLine {
             work,
             samples: (status.samples, status.goal_samples),
-            noise_percent: status.noise_percent,
+            noise: status.noise,
             seconds: status.seconds,
             seconds_left: status.seconds_left,
             rays_per_second: status.rays_per_second,
@@ -310,8 +302,4 @@ fn tree_lines(tree: Option<&TreeStatistics>) -> Vec<(&'static str, String)> {
         ("Nodes", tree.n_nodes.to_string()),
         ("Memory", bytes_text(tree.n_bytes as f64)),
     ]
-}
-
-fn bytes_text(bytes: f64) -> String {
-    if bytes < 1e6 { format!("{:.0} kB", bytes / 1e3) } else { format!("{:.1} MB", bytes / 1e6) }
 }

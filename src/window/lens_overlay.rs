@@ -2,8 +2,8 @@
 //! plane of focus and the limits of sharpness.
 
 use super::background::Background;
+use super::figures::short;
 use super::panels::sharp_range;
-use super::widgets::short;
 use crate::render::{Feature, PixelMap};
 use crate::scene::description::CameraDescription;
 use crate::scene::orbit;

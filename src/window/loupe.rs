@@ -1,7 +1,7 @@
 //! The loupe: the pixels under the cursor, large, with all that is known of the middle one.
 
+use super::figures::short;
 use super::status::{PixelUnderCursor, Probed};
-use super::widgets::short;
 use egui::{Color32, ColorImage, Grid, Pos2, Rect, RichText, Sense, Stroke, Ui, Vec2};
 
 /// Pixels across; odd, so that one is in the middle.

@@ -222,6 +222,48 @@ fn texture_options(is_coarse: bool) -> TextureOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::color::Picture;
+    use crate::render::{RenderJob, RenderSettings};
+    use crate::scene::{Assets, resolve};
+    use crate::session::Maps;
+    use crate::window::tests::small_scene;
+
+    /// A picture of one grey, smaller than its job by `scale`.
+    fn frame(sequence: u64, scale: u32) -> Arc<Frame> {
+        let description = small_scene();
+        let scene = Arc::new(resolve(&description, &Assets::default()).unwrap());
+        let settings = RenderSettings::new(&description.render, Default::default());
+        let side = 16 / scale;
+        let pixels = vec![[0.5; 3]; (side * side) as usize];
+        Arc::new(Frame {
+            generation: sequence,
+            sequence,
+            job: RenderJob { scene, width: 16, height: 16, settings },
+            scale,
+            picture: Picture { width: side, height: side, pixels },
+            samples: 1,
+            noise: None,
+            maps: Maps::default(),
+        })
+    }
+
+    #[test]
+    fn a_coarse_picture_of_a_newer_scene_takes_the_place_of_a_sharp_one() {
+        let (sender, woken) = std::sync::mpsc::channel();
+        let wake = move || sender.send(()).unwrap();
+        let mut display = PictureDisplay::new(wake).unwrap();
+        let ctx = egui::Context::default();
+        for (sequence, scale) in [(1, 1), (2, 4), (3, 1)] {
+            let tone = ToneMappingDescription::default();
+            display.show(&ctx, &frame(sequence, scale), View::Picture, &tone);
+            woken.recv().unwrap();
+            display.update(&ctx);
+            let side = 16 / scale as usize;
+            let shown = display.image().map(|image| image.size);
+            assert_eq!(shown, Some([side, side]), "frame {sequence} is not shown");
+            assert_eq!(display.shown().unwrap().size, [16, 16], "it stands for another size");
+        }
+    }
 
     #[test]
     fn pictures_too_large_for_the_graphics_card_are_shown_smaller() {

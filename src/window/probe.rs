@@ -1,6 +1,7 @@
 //! What is under the resting cursor: depth, object, and how large its blur is.
 
 use super::status::Probed;
+use super::structure::Part;
 use crate::render::{Feature, Seen};
 use crate::scene::Assets;
 use crate::scene::assets::MeshKey;
@@ -82,24 +83,31 @@ pub(super) fn described(
     height: u32,
 ) -> Probed {
     let depth = f64::from(feature.depth);
-    let (object, material) = match feature.seen {
-        Seen::Nothing => ("background".to_owned(), String::new()),
-        Seen::Light(index) => {
-            let mut enabled = scene.lights.iter().filter(|light| light.enabled);
-            let light = enabled.nth(index as usize);
-            (light.map_or_else(String::new, |light| light.name.clone()), String::new())
-        }
-        Seen::Object(index) => {
-            let mut enabled = scene.objects.iter().filter(|object| object.enabled);
-            match enabled.nth(index as usize) {
-                Some(object) => (object.name.clone(), material_name(object, feature.slot, assets)),
-                // The scene has changed since.
-                None => (String::new(), String::new()),
-            }
+    let (object, material) = match (feature.seen, part_of(feature, scene)) {
+        (Seen::Nothing, _) => ("background".to_owned(), String::new()),
+        // The scene has changed since.
+        (_, None) => (String::new(), String::new()),
+        (Seen::Light(_), Some((_, index))) => (scene.lights[index].name.clone(), String::new()),
+        (Seen::Object(_), Some((_, index))) => {
+            let object = &scene.objects[index];
+            (object.name.clone(), material_name(object, feature.slot, assets))
         }
     };
     let blur_px = orbit::blur_px(&scene.camera, depth, f64::from(height));
     Probed { object, material, depth, blur_px }
+}
+
+/// The light or the object that a feature belongs to, and its index in the description: what is
+/// rendered are the enabled ones.
+pub(super) fn part_of(feature: &Feature, scene: &SceneDescription) -> Option<(Part, usize)> {
+    fn nth(enabled: impl Iterator<Item = bool>, n: u32) -> Option<usize> {
+        enabled.enumerate().filter(|(_, is_enabled)| *is_enabled).nth(n as usize).map(|(i, _)| i)
+    }
+    match feature.seen {
+        Seen::Nothing => None,
+        Seen::Light(n) => Some((Part::Light, nth(scene.lights.iter().map(|l| l.enabled), n)?)),
+        Seen::Object(n) => Some((Part::Object, nth(scene.objects.iter().map(|o| o.enabled), n)?)),
+    }
 }
 
 /// The material of an object, or of a slot of its mesh.

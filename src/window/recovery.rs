@@ -47,6 +47,16 @@ impl Recovery {
         Self { path, _lock: lock, offered, ..Self::default() }
     }
 
+    /// Whether this is the copy.
+    pub(super) fn is_copy(&self, source: &Source) -> bool {
+        matches!(source, Source::File(path) if Some(path) == self.path.as_ref())
+    }
+
+    /// The copy is open, and not saved: it goes when that is over.
+    pub(super) fn note_restored(&mut self) {
+        self.written = true;
+    }
+
     /// Removes the copy: everything is saved, or let go on purpose.
     pub(super) fn forget(&mut self) {
         if let Some(path) = self.path.as_ref().filter(|_| self.written) {
@@ -55,6 +65,15 @@ impl Recovery {
         }
         self.written = false;
         self.copied = None;
+    }
+}
+
+#[cfg(test)]
+impl Recovery {
+    /// Offers a copy as if it had been left behind.
+    pub(super) fn pretend_to_find(&mut self, path: impl Into<PathBuf>) {
+        self.path = Some(path.into());
+        self.offered = true;
     }
 }
 
@@ -141,7 +160,7 @@ impl App {
         }
         if restore || drop {
             self.recovery.offered = false;
-            // It is written again as soon as there is an edit to keep.
+            // One that is restored stays until it is loaded and saved.
             self.recovery.written = drop;
             if drop {
                 self.recovery.forget();

@@ -1,6 +1,6 @@
 //! What the window remembers beside the scene: how it is laid out and what is chosen in it.
 
-use super::export::ExportSettings;
+use super::export_settings::ExportSettings;
 use super::loupe::Loupe;
 use super::navigation::Navigation;
 use super::panels::{DisplayState, Limits, PickFor, Selection, SizeMode};

@@ -1,8 +1,13 @@
 //! The status bar: what the renderer is doing, in words and figures that never flatter.
 
+use super::figures::{duration, noise_text, short};
 use super::theme;
-use super::widgets::short;
-use egui::{RichText, Ui, Vec2};
+use crate::io::progress::Step;
+use crate::loader::LoadProgress;
+use crate::render::Noise;
+use egui::{Color32, RichText, Ui, Vec2};
+use std::path::Path;
+use std::time::Duration;
 
 /// What the bar says, already measured.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,7 +17,7 @@ pub(super) struct StatusLine {
     /// Whole passes so far, and how many make the picture done.
     pub(super) samples: (u32, u32),
     /// 100 x estimated RMSE over mean, where there is an estimate.
-    pub(super) noise_percent: Option<f64>,
+    pub(super) noise: Option<Noise>,
     /// Render time so far, in seconds.
     pub(super) seconds: f64,
     /// Estimated time to the goal, in seconds.
@@ -75,7 +80,7 @@ pub(super) fn status_ui(
     pixel: Option<PixelUnderCursor>,
     probed: Option<&Probed>,
 ) {
-    progress_line(ui, line);
+    work_line(ui, line);
     ui.horizontal_centered(|ui| {
         let [n_done, n_goal] = [line.samples.0, line.samples.1];
         ui.spacing_mut().item_spacing.x = 4.0;
@@ -104,9 +109,39 @@ pub(super) fn status_ui(
     });
 }
 
-/// A thin line at the top of the bar, as long as the work is far.
-fn progress_line(ui: &mut Ui, line: &StatusLine) {
-    let bar = ui.max_rect().expand2(Vec2::new(8.0, 0.0));
+/// Shows what is being loaded and how far it is; gives back whether it is to be stopped.
+pub(super) fn loading_ui(ui: &mut Ui, name: &str, progress: &LoadProgress) -> bool {
+    // News are looked for, not sent: there may be a hundred a second.
+    ui.request_repaint_after(Duration::from_millis(50));
+    let (text, share) = match progress {
+        LoadProgress::Idle | LoadProgress::Loading { step: None, .. } => (String::new(), 0.0),
+        LoadProgress::Loading { step: Some((file, step)), .. } => step_text(file, *step),
+    };
+    progress_line(ui, share, theme::accent(ui.visuals()));
+    ui.horizontal_centered(|ui| {
+        ui.label(RichText::new(format!("loading {name}")).strong());
+        let stop = ui.button("Cancel").on_hover_text("keeps the scene that is open (Esc)");
+        ui.add(egui::Label::new(RichText::new(text).weak()).truncate());
+        stop.clicked()
+    })
+    .inner
+}
+
+/// In words, and how far the file is by that, 0..=1.
+fn step_text(file: &str, step: Step) -> (String, f32) {
+    let file = Path::new(file).file_name().unwrap_or_default().to_string_lossy();
+    match step {
+        Step::Reading(share) => {
+            let percent = (share * 100.0).floor();
+            (format!("reading {file}, {percent} %"), 0.6 * share)
+        }
+        Step::Normals => (format!("preparing the normals of {file}"), 0.6),
+        Step::Tree => (format!("building the tree of {file}"), 0.8),
+    }
+}
+
+/// How far the work is.
+fn work_line(ui: &Ui, line: &StatusLine) {
     let share = match line.work {
         Work::Idle | Work::Building | Work::Failed(_) => 0.0,
         Work::Rendering | Work::Paused => {
@@ -114,12 +149,18 @@ fn progress_line(ui: &mut Ui, line: &StatusLine) {
         }
         Work::Done => 1.0,
     };
-    let mut filled = bar.with_max_y(bar.top() + 2.0);
-    filled.set_right(bar.left() + bar.width() * share.clamp(0.0, 1.0) as f32);
     let color = match line.work {
         Work::Paused | Work::Done => ui.visuals().weak_text_color(),
         _ => theme::accent(ui.visuals()),
     };
+    progress_line(ui, share as f32, color);
+}
+
+/// A thin line at the top of the bar, as long as the work is far.
+fn progress_line(ui: &Ui, share: f32, color: Color32) {
+    let bar = ui.max_rect().expand2(Vec2::new(8.0, 0.0));
+    let mut filled = bar.with_max_y(bar.top() + 2.0);
+    filled.set_right(bar.left() + bar.width() * share.clamp(0.0, 1.0));
     ui.painter().rect_filled(filled, 0.0, color);
 }
 
@@ -138,8 +179,8 @@ fn work_text(work: &Work, n_done: u32, n_goal: u32) -> String {
 fn details(line: &StatusLine) -> String {
     let mut parts = Vec::new();
     let working = matches!(line.work, Work::Rendering);
-    if let Some(noise) = line.noise_percent {
-        parts.push(format!("noise {noise:.1} %"));
+    if let Some(noise) = line.noise {
+        parts.push(format!("noise {}", noise_text(noise)));
     }
     if line.n_invalid > 0 {
         parts.push(format!("{} samples not finite", line.n_invalid));
@@ -157,16 +198,6 @@ fn details(line: &StatusLine) -> String {
         parts.push(format!("{} thread{s}", line.n_threads));
     }
     parts.iter().map(|part| format!("· {part} ")).collect::<String>().trim_end().to_owned()
-}
-
-/// Seconds as a person says them, rounded down.
-pub(super) fn duration(seconds: f64) -> String {
-    let whole = seconds.max(0.0) as u64;
-    match whole {
-        0..60 => format!("{whole} s"),
-        60..3600 => format!("{} min {:02} s", whole / 60, whole % 60),
-        _ => format!("{} h {:02} min", whole / 3600, whole / 60 % 60),
-    }
 }
 
 fn pixel_text(pixel: PixelUnderCursor) -> String {
@@ -190,7 +221,7 @@ mod tests {
         StatusLine {
             work,
             samples: (48, 256),
-            noise_percent: Some(2.13),
+            noise: Some(Noise { percent: 2.13, uncertainty: 0.08, ratio: 0.5 }),
             seconds: 3.9,
             seconds_left: Some(12.9),
             rays_per_second: 8.4e6,
@@ -205,7 +236,8 @@ mod tests {
     fn the_line_tells_samples_noise_time_rate_and_threads() {
         let line = line(Work::Rendering);
         let told = format!("{} {}", work_text(&line.work, 48, 256), details(&line));
-        let expected = "rendering 48/256 · noise 2.1 % · 3 s, 12 s left · 8.4 Mrays/s · 2 threads";
+        let expected =
+            "rendering 48/256 · noise 2.1 ± 0.2 % · 3 s, 12 s left · 8.4 Mrays/s · 2 threads";
         assert_eq!(told, expected, "the line reads differently");
     }
 
@@ -217,11 +249,13 @@ mod tests {
     }
 
     #[test]
-    fn durations_are_rounded_down() {
-        for (seconds, said) in
-            [(0.99, "0 s"), (59.99, "59 s"), (61.5, "1 min 01 s"), (3725.0, "1 h 02 min")]
-        {
-            assert_eq!(duration(seconds), said, "for {seconds}");
-        }
+    fn loading_tells_the_file_and_what_is_done_with_it() {
+        let told = |step| step_text("../meshes/igea.obj", step).0;
+        assert_eq!(told(Step::Reading(0.439)), "reading igea.obj, 43 %", "not rounded down");
+        assert_eq!(told(Step::Normals), "preparing the normals of igea.obj", "another step");
+        assert_eq!(told(Step::Tree), "building the tree of igea.obj", "another step");
+        let shares = [Step::Reading(0.0), Step::Reading(1.0), Step::Normals, Step::Tree]
+            .map(|step| step_text("a", step).1);
+        assert!(shares.is_sorted() && shares[3] < 1.0, "the line goes {shares:?}");
     }
 }

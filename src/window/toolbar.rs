@@ -1,9 +1,11 @@
 //! The bar at the top: file, undo, view, and the few things that are always at hand.
 
 use super::export::ExportProgress;
+use super::icons::Icon;
 use super::keys::{Action, Keys};
 use super::panels::DisplayState;
 use super::viewport::Zoom;
+use super::views::View;
 use crate::scene::description::ToneMappingDescription;
 use egui::{Button, RichText, Ui};
 
@@ -27,6 +29,8 @@ pub(super) struct ToolbarFacts<'a> {
     pub(super) keys: &'a Keys,
     /// How far a picture is that is rendered to a file.
     pub(super) picture: Option<ExportProgress>,
+    /// What is shown of each pixel.
+    pub(super) view: View,
     /// Files opened before, newest first.
     pub(super) recent: &'a [std::path::PathBuf],
 }
@@ -60,13 +64,21 @@ pub(super) fn toolbar_ui(
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             if !facts.start_shown {
-                let panel = Button::selectable(facts.panel_shown, "Panel");
+                let panel = Button::selectable(facts.panel_shown, (Icon::Panel.atom(), "Panel"));
                 let help = facts.keys.hint("the panel with all settings", Action::TogglePanel);
                 if ui.add(panel).on_hover_text(help).clicked() {
                     chosen = Some(ToolbarChoice::Do(Action::TogglePanel));
                 }
             }
-            button(ui, facts.keys, ("Help", "all keys"), Action::Help, true, &mut chosen);
+            button(
+                ui,
+                facts.keys,
+                Icon::Help,
+                ("Help", "all keys"),
+                Action::Help,
+                true,
+                &mut chosen,
+            );
             if !facts.start_shown {
                 zoom_ui(ui, display);
                 exposure_ui(ui, tone);
@@ -85,15 +97,17 @@ fn work_ui(ui: &mut Ui, facts: &ToolbarFacts<'_>, chosen: &mut Option<ToolbarCho
     };
     let (undo, redo) = (told("undo", facts.undo), told("redo", facts.redo));
     let keys = facts.keys;
-    button(ui, keys, ("Undo", &undo), Action::Undo, facts.undo.is_some(), chosen);
-    button(ui, keys, ("Redo", &redo), Action::Redo, facts.redo.is_some(), chosen);
+    let (can_undo, can_redo) = (facts.undo.is_some(), facts.redo.is_some());
+    button(ui, keys, Icon::Undo, ("Undo", &undo), Action::Undo, can_undo, chosen);
+    button(ui, keys, Icon::Redo, ("Redo", &redo), Action::Redo, can_redo, chosen);
     ui.add_space(8.0);
-    let pause = if facts.is_paused { "Resume" } else { "Pause" };
-    button(ui, keys, (pause, "holds the picture, or goes on"), Action::Pause, true, chosen);
+    let (icon, pause) =
+        if facts.is_paused { (Icon::Resume, "Resume") } else { (Icon::Pause, "Pause") };
+    button(ui, keys, icon, (pause, "holds the picture, or goes on"), Action::Pause, true, chosen);
     let help = "the whole scene in the picture";
-    button(ui, keys, ("Frame", help), Action::FrameAll, true, chosen);
+    button(ui, keys, Icon::Frame, ("Frame", help), Action::FrameAll, true, chosen);
     let help = "writes the picture as it is to a file, with its scene inside";
-    button(ui, keys, ("Snapshot", help), Action::Snapshot, true, chosen);
+    button(ui, keys, Icon::Snapshot, ("Snapshot", help), Action::Snapshot, true, chosen);
     let (text, help) = match &facts.picture {
         None => ("Render…".to_owned(), "renders a picture of any size to a file"),
         Some(picture) => {
@@ -101,7 +115,7 @@ fn work_ui(ui: &mut Ui, facts: &ToolbarFacts<'_>, chosen: &mut Option<ToolbarCho
             (format!("Render {percent} %"), "a picture is being rendered")
         }
     };
-    button(ui, keys, (&text, help), Action::RenderPicture, true, chosen);
+    button(ui, keys, Icon::Picture, (&text, help), Action::RenderPicture, true, chosen);
 }
 
 fn title_ui(ui: &mut Ui, facts: &ToolbarFacts<'_>) {
@@ -149,6 +163,14 @@ fn menus(ui: &mut Ui, facts: &ToolbarFacts<'_>, chosen: &mut Option<ToolbarChoic
         item(ui, keys, "Side", Action::ViewSide, chosen);
         item(ui, keys, "Top", Action::ViewTop, chosen);
         ui.separator();
+        for view in View::ALL {
+            let action = Action::Show(view);
+            let button = Button::selectable(facts.view == view, view.name());
+            if ui.add(button.shortcut_text(keys.shown(action))).clicked() {
+                *chosen = Some(ToolbarChoice::Do(action));
+            }
+        }
+        ui.separator();
         item(ui, keys, "Lens open or closed", Action::ToggleLens, chosen);
         item(ui, keys, "Pin and compare", Action::Compare, chosen);
         item(ui, keys, "Restart", Action::Restart, chosen);
@@ -181,12 +203,14 @@ fn item(ui: &mut Ui, keys: &Keys, text: &str, action: Action, chosen: &mut Optio
 fn button(
     ui: &mut Ui,
     keys: &Keys,
+    icon: Icon,
     (text, help): (&str, &str),
     action: Action,
     enabled: bool,
     chosen: &mut Option<ToolbarChoice>,
 ) {
-    let response = ui.add_enabled(enabled, Button::new(text).frame_when_inactive(false));
+    let response = ui
+        .add_enabled(enabled, Button::new((icon.atom(), text)).frame_when_inactive(false).gap(5.0));
     if response.on_hover_text(keys.hint(help, action)).clicked() {
         *chosen = Some(ToolbarChoice::Do(action));
     }

@@ -35,6 +35,16 @@ pub(super) enum Click {
     For(PickFor, f32, f32),
     /// Turn the camera about what is there.
     TurnAbout(f32, f32),
+    /// Choose what is there in the panel.
+    Choose(f32, f32),
+}
+
+impl Click {
+    /// Where it was.
+    pub(super) fn at(self) -> (f32, f32) {
+        let (Self::For(_, x, y) | Self::TurnAbout(x, y) | Self::Choose(x, y)) = self;
+        (x, y)
+    }
 }
 
 /// What happened over the viewport in this frame.
@@ -102,7 +112,7 @@ pub(super) fn viewport_ui(
         } else if response.clicked_by(PointerButton::Primary) && command {
             Some(Click::For(PickFor::Focus, x, y))
         } else if response.clicked_by(PointerButton::Primary) {
-            picking.map(|purpose| Click::For(purpose, x, y))
+            Some(picking.map_or(Click::Choose(x, y), |purpose| Click::For(purpose, x, y)))
         } else {
             None
         }

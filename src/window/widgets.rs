@@ -1,14 +1,16 @@
 //! The parts panels are made of: a named line, a figure with its slider, a colour, a choice.
 //!
 //! Every control writes to the description only on a real edit, so that showing a value never
-//! changes it, and keeps the full precision of what is typed. A right click on a control resets
-//! it or copies its parameter path.
+//! changes it, and keeps the full precision of what is typed.
 
+use super::figures::significant;
+use super::parameter::parameter;
 use super::theme::{FIGURE_WIDTH, LABEL_WIDTH, ROW_HEIGHT};
-use crate::io::scene_file::{self, ParameterPath};
-use crate::scene::description::SceneDescription;
-use egui::{Id, Response, Ui, Vec2};
+use egui::{Response, Ui, Vec2};
 use std::ops::RangeInclusive;
+
+/// Left and right of the figure in its box, in points.
+const BOX_PADDING: f32 = 3.0;
 
 /// Written behind lengths: scene units.
 pub(super) const LENGTH: &str = " u";
@@ -262,80 +264,35 @@ pub(super) fn number_box(
     integer: bool,
 ) -> Response {
     let typing = ui.memory(|memory| memory.has_focus(ui.next_auto_id()));
+    let whole = typing || integer;
+    let shown = if whole { None } else { Some(fitting(ui, *value, unit, width)) };
     let drag = egui::DragValue::new(value)
         .speed(speed)
         .max_decimals(if integer { 0 } else { 6 })
         .update_while_editing(false)
         .clip_text(true)
         .min_size(Vec2::new(width, ROW_HEIGHT))
-        .custom_formatter(move |figure, _| {
-            // While it is typed the whole figure shows, so that leaving the box rounds nothing.
-            if typing || integer { format!("{figure}") } else { short(figure) }
-        })
-        .suffix(if typing { String::new() } else { unit.to_owned() });
-    ui.add(drag)
+        // While it is typed the whole figure shows, so that leaving the box rounds nothing.
+        .custom_formatter(move |figure, _| shown.clone().unwrap_or_else(|| format!("{figure}")))
+        .suffix(if integer && !typing { unit.to_owned() } else { String::new() });
+    ui.scope(|ui| {
+        ui.spacing_mut().button_padding.x = BOX_PADDING;
+        ui.add(drag)
+    })
+    .inner
 }
 
-/// At most five significant digits, without trailing zeros.
-pub(super) fn short(figure: f64) -> String {
-    if figure == 0.0 || !figure.is_finite() {
-        return format!("{figure}");
-    }
-    let magnitude = figure.abs().log10().floor();
-    if !(-5.0..7.0).contains(&magnitude) {
-        return format!("{figure:.3e}");
-    }
-    let decimals = (3.0 - magnitude).clamp(0.0, 8.0) as usize;
-    let text = format!("{figure:.decimals$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
-}
-
-/// Ties the control of that name to a parameter of the scene: a right click resets it or copies
-/// its path. An empty path is no parameter's.
-pub(super) fn parameter(response: &Response, label: &str, path: &str) {
-    if path.is_empty() {
-        return;
-    }
-    #[cfg(test)]
-    super::tests::parameters::note(&response.ctx, label, path);
-    #[cfg(not(test))]
-    let _ = label;
-    // Beside the popup that lists and swatches open themselves.
-    let menu = egui::Popup::context_menu(response).id(response.id.with("parameter"));
-    menu.show(|ui| {
-        let has_default = path.parse().is_ok_and(|path| scene_file::has_default(&path));
-        let reset = ui.add_enabled(has_default, egui::Button::new("Reset"));
-        if reset
-            .on_hover_text("the value of a scene file that does not say")
-            .on_disabled_hover_text("has no usual value")
-            .clicked()
-        {
-            ui.data_mut(|data| data.insert_temp(reset_id(), path.to_owned()));
-        }
-        if ui.button("Copy path").on_hover_text(path).clicked() {
-            ui.copy_text(path.to_owned());
-        }
-    });
-}
-
-/// Gives the parameter its default whose reset was asked for in this frame.
-///
-/// # Errors
-/// Where the scene would not be valid then, in words.
-pub(super) fn take_reset(ctx: &egui::Context, scene: &mut SceneDescription) -> Result<(), String> {
-    let asked = ctx.data_mut(|data| data.remove_temp::<String>(reset_id()));
-    let Some(path) = asked else { return Ok(()) };
-    let path: ParameterPath = path.parse().map_err(|error| format!("{error}"))?;
-    *scene = scene_file::with_default(scene, &path).map_err(|error| error.to_string())?;
-    Ok(())
-}
-
-fn reset_id() -> Id {
-    Id::unique("reset a parameter")
+/// The figure with its unit, in as many digits as the box has room for: it never grows.
+fn fitting(ui: &Ui, figure: f64, unit: &str, width: f32) -> String {
+    let font = ui.style().drag_value_text_style.resolve(ui.style());
+    let room = width - 2.0 * BOX_PADDING;
+    let fits = |text: &String| {
+        let color = egui::Color32::PLACEHOLDER;
+        ui.painter().layout_no_wrap(text.clone(), font.clone(), color).size().x <= room
+    };
+    let with_unit = (2..=4).rev().map(|n_digits| significant(figure, n_digits) + unit);
+    let without = (1..=4).rev().map(|n_digits| significant(figure, n_digits));
+    with_unit.chain(without).find(fits).unwrap_or_else(|| significant(figure, 1))
 }
 
 /// The name of a line, cut with an ellipsis where it is too long.
@@ -352,27 +309,5 @@ fn name_cell(ui: &mut Ui, label: &str, help: &str) {
     let response = cell.add(egui::Label::new(text).truncate());
     if !help.is_empty() {
         response.on_hover_text(help);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::short;
-
-    #[test]
-    fn figures_show_what_matters_and_no_more() {
-        for (figure, shown) in [
-            (0.0, "0"),
-            (5.0, "5"),
-            (0.15, "0.15"),
-            (0.123456, "0.1235"),
-            (1234.5678, "1235"),
-            (-2.5, "-2.5"),
-            (0.00002, "0.00002"),
-            (1e9, "1.000e9"),
-            (100.0, "100"),
-        ] {
-            assert_eq!(short(figure), shown, "for {figure}");
-        }
     }
 }

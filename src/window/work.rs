@@ -5,7 +5,7 @@ use super::panels::{Limits, SizeMode};
 use super::state::InterfaceState;
 use crate::geometry::AcceleratorKind;
 use crate::math::Aabb;
-use crate::render::{RenderJob, RenderSettings};
+use crate::render::{Noise, RenderJob, RenderSettings};
 use crate::scene::description::SceneDescription;
 use crate::scene::resolve::{ResolveError, resolve};
 use crate::scene::{Assets, Scene};
@@ -21,8 +21,8 @@ pub(super) struct RenderWork {
     pub(super) assets: Arc<Assets>,
     resolved: Option<Resolved>,
     job: Option<RenderJob>,
-    /// (samples, noise in percent) of the picture being refined.
-    pub(super) noise: Vec<(u32, f64)>,
+    /// Samples and noise of the picture being refined.
+    pub(super) noise: Vec<(u32, Noise)>,
     noise_of: u64,
 }
 
@@ -108,7 +108,7 @@ impl RenderWork {
     }
 
     /// Keeps the newest estimate of the noise for the graph; another picture starts it anew.
-    pub(super) fn note_noise(&mut self, generation: u64, samples: u32, noise: Option<f64>) {
+    pub(super) fn note_noise(&mut self, generation: u64, samples: u32, noise: Option<Noise>) {
         if self.noise_of != generation
             || self.noise.last().is_some_and(|(before, _)| samples < *before)
         {
@@ -119,7 +119,7 @@ impl RenderWork {
         if let Some(noise) = noise
             && is_new
             && 0 < samples
-            && noise.is_finite()
+            && noise.percent.is_finite()
         {
             self.noise.push((samples, noise));
         }

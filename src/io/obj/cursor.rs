@@ -22,6 +22,11 @@ impl<'a> Cursor<'a> {
         self.line
     }
 
+    /// The part of the file that is read, 0..=1.
+    pub(super) fn share(&self) -> f32 {
+        (self.place() as f64 / self.bytes.len().max(1) as f64) as f32
+    }
+
     pub(super) fn at_end_of_file(&self) -> bool {
         self.bytes.len() <= self.at
     }

@@ -16,12 +16,11 @@ mod reader;
 #[cfg(test)]
 mod tests;
 
-use std::sync::atomic::AtomicBool;
-
 use glam::{Vec2, Vec3};
 
 use crate::geometry::mesh::Mesh;
 use crate::geometry::normals;
+use crate::io::progress::{Step, Watch};
 use crate::scene::description::NormalsKind;
 pub use error::ObjError;
 use reader::Reader;
@@ -67,17 +66,19 @@ pub struct MeshNotes {
 }
 
 /// Reads a whole mesh and gives it shading normals. `crease_angle_deg` is a scene's
-/// `crease_angle`: 0..=180. `stop` is looked at every few megabytes.
+/// `crease_angle`: 0..=180. `watch` is asked, and told how far it is, every few megabytes.
 ///
 /// # Errors
 /// When it is no mesh, does not fit into memory, or is not wanted any more.
-pub fn load_mesh(
+pub fn load_mesh<'a>(
     bytes: &[u8],
     kind: NormalsKind,
     crease_angle_deg: f64,
-    stop: &AtomicBool,
+    watch: impl Into<Watch<'a>>,
 ) -> Result<(Mesh, MeshNotes), ObjError> {
-    let file = parse(bytes, stop)?;
+    let watch = watch.into();
+    let file = parse(bytes, watch)?;
+    watch.tell(Step::Normals);
     let crease_angle = crease_angle_deg.to_radians();
     let normals = match kind {
         NormalsKind::Flat => normals::Normals::default(),
@@ -111,6 +112,6 @@ pub fn load_mesh(
 ///
 /// # Errors
 /// As [`load_mesh`].
-pub fn parse(bytes: &[u8], stop: &AtomicBool) -> Result<ObjFile, ObjError> {
-    Reader::new(bytes, stop).read()
+pub fn parse<'a>(bytes: &[u8], watch: impl Into<Watch<'a>>) -> Result<ObjFile, ObjError> {
+    Reader::new(bytes, watch.into()).read()
 }

@@ -1,7 +1,6 @@
 //! The lines of an OBJ file, one after the other.
 
 use std::collections::HashMap;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::{DVec3, Vec2, Vec3};
 
@@ -9,6 +8,7 @@ use super::cursor::Cursor;
 use super::faces::Corner;
 use super::polygon::PolygonCutter;
 use super::{ObjError, ObjFile};
+use crate::io::progress::{Step, Watch};
 use crate::io::{excerpt, memory};
 
 /// Entries that any array of a mesh may have: indices stay far from `ABSENT`.
@@ -30,9 +30,9 @@ const NORMALS_A_TRIANGLE: usize = 80;
 pub(super) struct Reader<'a> {
     pub(super) cursor: Cursor<'a>,
     pub(super) file: ObjFile,
-    /// Whether nobody wants the mesh any more.
-    stop: &'a AtomicBool,
-    /// Where in the file `stop` and the memory are looked at next.
+    /// Who waits for the mesh.
+    watch: Watch<'a>,
+    /// Where in the file it and the memory are looked at next.
     next_look: usize,
     /// Slots by the name that faces have.
     pub(super) slot_of_name: HashMap<Option<&'a [u8]>, u32>,
@@ -53,9 +53,9 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    pub(super) fn new(bytes: &'a [u8], stop: &'a AtomicBool) -> Self {
+    pub(super) fn new(bytes: &'a [u8], watch: Watch<'a>) -> Self {
         Self {
-            stop,
+            watch,
             next_look: BETWEEN_LOOKS,
             cursor: Cursor::new(bytes),
             file: ObjFile::default(),
@@ -86,9 +86,10 @@ impl<'a> Reader<'a> {
     #[cold]
     fn look(&mut self) -> Result<(), ObjError> {
         self.next_look = self.cursor.place() + BETWEEN_LOOKS;
-        if self.stop.load(Ordering::Relaxed) {
+        if self.watch.is_stopped() {
             return Err(ObjError::Cancelled);
         }
+        self.watch.tell(Step::Reading(self.cursor.share()));
         let file = &self.file;
         let used = size_of_val(&file.positions[..])
             + size_of_val(&file.uvs[..])

@@ -4,6 +4,9 @@ use glam::{DVec3, Vec2, Vec3, vec2, vec3};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
+use std::cell::RefCell;
+use std::sync::atomic::AtomicBool;
+
 use super::*;
 use crate::geometry::mesh::ABSENT;
 
@@ -398,4 +401,17 @@ fn a_large_file_is_given_up_when_nobody_wants_it() {
     assert!(parse(&bytes).is_ok(), "the file is a mesh");
     let stopped = super::parse(&bytes, &AtomicBool::new(true));
     assert_eq!(stopped, Err(ObjError::Cancelled), "it was read to its end");
+}
+
+#[test]
+fn how_far_it_is_is_told_every_few_megabytes() {
+    let bytes = [TRIANGLE.as_bytes(), &vec![b'\n'; 10 << 20]].concat();
+    let (never, steps) = (AtomicBool::new(false), RefCell::new(Vec::new()));
+    let told = |step| steps.borrow_mut().push(step);
+    load_mesh(&bytes, NormalsKind::Flat, 0.0, Watch::new(&never, &told)).unwrap();
+    let steps = steps.into_inner();
+    let [Step::Reading(first), Step::Reading(second), Step::Normals] = steps[..] else {
+        panic!("told {steps:?}");
+    };
+    assert!((first - 0.4).abs() < 0.01 && (second - 0.8).abs() < 0.01, "told {steps:?}");
 }

@@ -4,7 +4,9 @@ use super::lens_diagram::lens_diagram;
 use super::{PickFor, subheading};
 use crate::scene::description::CameraDescription;
 use crate::scene::orbit;
-use crate::window::widgets::{Figure, LENGTH, parameter, row, short, switch, triple};
+use crate::window::figures::short;
+use crate::window::parameter::parameter;
+use crate::window::widgets::{Figure, LENGTH, row, switch, triple};
 use egui::Ui;
 
 /// Height of the sensor that equivalent f-numbers stand for, in millimetres.

@@ -4,27 +4,44 @@
 //! Drawn here rather than by a plotting crate: those have linear axes, so that ticks, grid and
 //! points would have to be made logarithmic by hand all the same.
 
-use crate::window::status::duration;
+use crate::render::Noise;
+use crate::window::figures::{duration, noise_text, percent_text, short};
 use crate::window::theme;
-use crate::window::widgets::short;
 use egui::{Align2, Pos2, Rect, Sense, Shape, Stroke, TextStyle, Ui, Vec2, pos2};
 
 /// Height of the graph in points.
 const HEIGHT: f32 = 124.0;
 /// Room for the figures on the left and below.
 const MARGIN: Vec2 = Vec2::new(38.0, 18.0);
-/// Independent samples: half the noise for four times as many.
-const SLOPE: f64 = -0.5;
-
 /// What the graph shows.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::window) struct Convergence<'a> {
-    /// (samples, noise in percent), in order of samples.
-    pub(in crate::window) noise: &'a [(u32, f64)],
+    /// Samples and noise, in order of samples.
+    pub(in crate::window) noise: &'a [(u32, Noise)],
     /// Seconds of rendering so far.
     pub(in crate::window) seconds: f64,
     /// Whether samples are still being added.
     pub(in crate::window) is_rendering: bool,
+}
+
+/// A figure of the graph.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    samples: f64,
+    noise: Noise,
+}
+
+impl Point {
+    /// The noise to expect at so many samples.
+    fn percent_at(&self, samples: f64) -> f64 {
+        let doublings = (samples / self.samples).log2();
+        self.noise.percent * self.noise.ratio.powf(0.5 * doublings)
+    }
+
+    /// The noise with its uncertainty taken off, or added: never 0.
+    fn percent_less(&self, errors: f64) -> f64 {
+        self.noise.percent * (1.0 - errors * self.noise.uncertainty.min(0.9))
+    }
 }
 
 /// Graph and outlook; `goal_samples` and `goal_percent` are where rendering stops.
@@ -34,37 +51,32 @@ pub(super) fn convergence_ui(
     goal_samples: u32,
     goal_percent: Option<f64>,
 ) {
-    let points: Vec<(f64, f64)> = convergence
+    let points: Vec<Point> = convergence
         .noise
         .iter()
-        .map(|(samples, percent)| (f64::from(*samples), *percent))
-        .filter(|(_, percent)| 0.0 < *percent)
+        .map(|(samples, noise)| Point { samples: f64::from(*samples), noise: *noise })
+        .filter(|point| 0.0 < point.noise.percent)
         .collect();
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return };
     let (rect, response) =
         ui.allocate_exact_size(Vec2::new(ui.available_width(), HEIGHT), Sense::hover());
-    let told = format!(
-        "noise {} at {} samples, {} at {}",
-        percent_text(first.1),
-        short(first.0),
-        percent_text(last.1),
-        short(last.0)
-    );
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &told));
+    let told =
+        |point: &Point| format!("{} at {} samples", noise_text(point.noise), short(point.samples));
+    let both = format!("noise {}, {}", told(first), told(last));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &both));
     let axes = Axes::new(rect, &points, f64::from(goal_samples), goal_percent);
     axes.draw_grid(ui, rect);
     axes.draw_goals(ui, f64::from(goal_samples), goal_percent);
     axes.draw_course(ui, &points, f64::from(goal_samples), convergence.is_rendering);
     if let Some(at) = response.hover_pos().filter(|at| axes.area.contains(*at)) {
         let nearest = points.iter().min_by(|a, b| {
-            let away = |point: &(f64, f64)| (axes.at(point.0, point.1).x - at.x).abs();
+            let away = |point: &Point| (axes.of(point).x - at.x).abs();
             away(a).total_cmp(&away(b))
         });
-        if let Some(&(samples, percent)) = nearest {
+        if let Some(point) = nearest {
             let marker = Stroke::new(1.5, ui.visuals().strong_text_color());
-            ui.painter().circle_stroke(axes.at(samples, percent), 4.0, marker);
-            let told = format!("{} at {} samples", percent_text(percent), short(samples));
-            response.on_hover_text_at_pointer(told);
+            ui.painter().circle_stroke(axes.of(point), 4.0, marker);
+            response.on_hover_text_at_pointer(told(point));
         }
     }
     ui.label(outlook(convergence, goal_percent));
@@ -80,15 +92,15 @@ struct Axes {
 }
 
 impl Axes {
-    fn new(rect: Rect, points: &[(f64, f64)], goal: f64, goal_percent: Option<f64>) -> Self {
+    fn new(rect: Rect, points: &[Point], goal: f64, goal_percent: Option<f64>) -> Self {
         let area = Rect::from_min_max(
             rect.min + Vec2::new(MARGIN.x, 8.0),
             rect.max - Vec2::new(10.0, MARGIN.y),
         );
-        let last = points.last().copied().unwrap_or((1.0, 1.0));
-        let right = goal.max(last.0).max(4.0);
-        let expected = last.1 * (right / last.0).powf(SLOPE);
-        let noise = points.iter().map(|(_, percent)| *percent).chain([expected]);
+        let last_samples = points.last().map_or(1.0, |last| last.samples);
+        let right = goal.max(last_samples).max(4.0);
+        let expected = points.last().map(|last| last.percent_at(right));
+        let noise = points.iter().map(|point| point.noise.percent).chain(expected);
         let noise = noise.chain(goal_percent.filter(|goal| 1e-3 < *goal));
         let (low, high) = noise.fold((f64::MAX, f64::MIN), |(low, high), percent| {
             (low.min(percent.log10()), high.max(percent.log10()))
@@ -104,6 +116,10 @@ impl Axes {
         };
         let (x, y) = (share(samples.max(1.0), self.x), share(percent.max(1e-9), self.y));
         pos2(self.area.left() + x * self.area.width(), self.area.bottom() - y * self.area.height())
+    }
+
+    fn of(&self, point: &Point) -> Pos2 {
+        self.at(point.samples, point.noise.percent)
     }
 
     fn draw_grid(&self, ui: &Ui, rect: Rect) {
@@ -146,22 +162,30 @@ impl Axes {
         }
     }
 
-    /// What was measured, and how it should go on.
-    fn draw_course(&self, ui: &Ui, points: &[(f64, f64)], goal: f64, is_rendering: bool) {
+    /// What was measured, between the limits of its uncertainty, and how it should go on.
+    fn draw_course(&self, ui: &Ui, points: &[Point], goal: f64, is_rendering: bool) {
         let accent = theme::accent(ui.visuals());
         let painter = ui.painter();
-        let course: Vec<Pos2> = points.iter().map(|point| self.at(point.0, point.1)).collect();
-        let Some((now, (samples, percent))) = course.last().copied().zip(points.last().copied())
-        else {
-            return;
-        };
-        if is_rendering && samples < goal {
-            let then = self.at(goal, percent * (goal / samples).powf(SLOPE));
-            let faint = Stroke::new(1.5, accent.gamma_multiply(0.5));
-            painter.extend(Shape::dashed_line(&[now, then], faint, 2.0, 4.0));
+        let Some(last) = points.last() else { return };
+        for pair in points.windows(2) {
+            let limit = |point: &Point, errors| self.at(point.samples, point.percent_less(errors));
+            let band = [
+                limit(&pair[0], 1.0),
+                limit(&pair[1], 1.0),
+                limit(&pair[1], -1.0),
+                limit(&pair[0], -1.0),
+            ];
+            let faint = accent.gamma_multiply(0.22);
+            painter.add(Shape::convex_polygon(band.to_vec(), faint, Stroke::NONE));
         }
+        if is_rendering && last.samples < goal {
+            let then = self.at(goal, last.percent_at(goal));
+            let faint = Stroke::new(1.5, accent.gamma_multiply(0.5));
+            painter.extend(Shape::dashed_line(&[self.of(last), then], faint, 2.0, 4.0));
+        }
+        let course = points.iter().map(|point| self.of(point)).collect();
         painter.line(course, Stroke::new(2.0, accent));
-        painter.circle_filled(now, 3.5, accent);
+        painter.circle_filled(self.of(last), 3.5, accent);
     }
 }
 
@@ -186,67 +210,61 @@ fn ticks((low, high): (f64, f64), most: usize) -> Vec<f64> {
         })
 }
 
-/// "2.1 % now, 1 % in about 40 s": noise falls with the square root of the time. The figure to come
-/// is the goal where there is one ahead, else the next power of ten.
+/// "2.1 ± 0.2 % now, 1 % in about 40 s", at the pace and with the gain of the samples so far. The
+/// figure to come is the goal where there is one ahead, else the next power of ten.
 fn outlook(convergence: &Convergence<'_>, goal_percent: Option<f64>) -> String {
-    let Some((_, now)) = convergence.noise.last().copied().filter(|(_, now)| 0.0 < *now) else {
+    let last = convergence.noise.last().filter(|(_, noise)| 0.0 < noise.percent);
+    let Some((_, noise)) = last.copied() else {
         return String::new();
     };
     if !convergence.is_rendering {
-        return format!("{} after {}", percent_text(now), duration(convergence.seconds));
+        return format!("{} after {}", noise_text(noise), duration(convergence.seconds));
     }
+    let now = noise.percent;
     let mut next = 10.0_f64.powf(now.log10().floor());
     if now < next * 1.05 {
         next /= 10.0;
     }
     let next = goal_percent.filter(|goal| *goal < now).unwrap_or(next);
-    let more = convergence.seconds * ((now / next).powi(2) - 1.0);
-    format!("{} now, {} in about {}", percent_text(now), percent_text(next), duration(more))
-}
-
-/// Two significant digits: the estimate is no better.
-fn percent_text(percent: f64) -> String {
-    let magnitude = percent.abs().max(1e-9).log10().floor();
-    let decimals = (1.0 - magnitude).clamp(0.0, 8.0) as usize;
-    let text = format!("{percent:.decimals$}");
-    let text =
-        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    format!("{text} %")
+    let more = convergence.seconds * (noise.samples_to(next) - 1.0);
+    format!("{} now, {} in about {}", noise_text(noise), percent_text(next), duration(more))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn told(noise: &[(u32, f64)], seconds: f64, is_rendering: bool, goal: Option<f64>) -> String {
-        outlook(&Convergence { noise, seconds, is_rendering }, goal)
+    /// After eight samples.
+    fn told(noise: Noise, seconds: f64, is_rendering: bool, goal: Option<f64>) -> String {
+        outlook(&Convergence { noise: &[(8, noise)], seconds, is_rendering }, goal)
+    }
+
+    fn noise(percent: f64, ratio: f64) -> Noise {
+        Noise { percent, uncertainty: 0.1, ratio }
     }
 
     #[test]
-    fn a_tenth_of_the_noise_takes_a_hundred_times_as_long() {
-        let course = [(1, 50.0), (16, 10.0)];
-        let expected = "10 % now, 1 % in about 3 min 18 s";
-        assert_eq!(told(&course, 2.0, true, None), expected, "another outlook");
-        let expected = "2 % now, 1 % in about 30 s";
-        assert_eq!(told(&[(4, 2.0)], 10.0, true, None), expected, "another outlook");
+    fn a_tenth_of_the_noise_takes_a_hundred_times_as_long_at_random() {
+        let expected = "10 ± 1 % now, 1 % in about 3 min 18 s";
+        assert_eq!(told(noise(10.0, 0.5), 2.0, true, None), expected, "another outlook");
+        let expected = "2.0 ± 0.2 % now, 1 % in about 30 s";
+        assert_eq!(told(noise(2.0, 0.5), 10.0, true, None), expected, "another outlook");
+    }
+
+    #[test]
+    fn what_falls_faster_is_there_sooner() {
+        // A quarter of the squared error at double the samples: ten times as many for a tenth.
+        let expected = "10 ± 1 % now, 1 % in about 18 s";
+        assert_eq!(told(noise(10.0, 0.25), 2.0, true, None), expected, "another outlook");
     }
 
     #[test]
     fn the_outlook_is_to_the_goal_and_done_promises_nothing() {
-        let course = [(16, 10.0)];
-        let expected = "10 % now, 5 % in about 6 s";
-        assert_eq!(told(&course, 2.0, true, Some(5.0)), expected, "not to the goal");
-        let expected = "10 % after 2 s";
-        assert_eq!(told(&course, 2.0, false, Some(5.0)), expected, "done, yet a promise");
-    }
-
-    #[test]
-    fn percentages_have_two_digits() {
-        for (percent, text) in
-            [(9.804, "9.8 %"), (212.7, "213 %"), (1.0, "1 %"), (0.0123, "0.012 %")]
-        {
-            assert_eq!(percent_text(percent), text, "for {percent}");
-        }
+        let now = noise(10.0, 0.5);
+        let expected = "10 ± 1 % now, 5 % in about 6 s";
+        assert_eq!(told(now, 2.0, true, Some(5.0)), expected, "not to the goal");
+        let expected = "10 ± 1 % after 2 s";
+        assert_eq!(told(now, 2.0, false, Some(5.0)), expected, "done, yet a promise");
     }
 
     #[test]
@@ -259,7 +277,9 @@ mod tests {
     #[test]
     fn both_axes_are_logarithmic() {
         let rect = Rect::from_min_size(Pos2::ZERO, Vec2::new(300.0, HEIGHT));
-        let axes = Axes::new(rect, &[(1.0, 80.0), (16.0, 20.0)], 256.0, Some(1.0));
+        let points = [(1.0, 80.0), (16.0, 20.0)]
+            .map(|(samples, percent)| Point { samples, noise: noise(percent, 0.5) });
+        let axes = Axes::new(rect, &points, 256.0, Some(1.0));
         let [a, b, c] = [(1.0, 80.0), (4.0, 40.0), (16.0, 20.0)].map(|(x, y)| axes.at(x, y));
         let (first, second) = (b - a, c - b);
         assert!((first - second).length() < 0.01, "{first:?} and {second:?} for equal ratios");

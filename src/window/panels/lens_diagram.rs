@@ -2,8 +2,8 @@
 
 use crate::scene::description::CameraDescription;
 use crate::scene::orbit;
+use crate::window::figures::short;
 use crate::window::theme;
-use crate::window::widgets::short;
 use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, TextStyle, Ui, Vec2, pos2};
 
 /// Draws the axis from the lens to beyond the focus, the sharp slice, and two rays to the focus.

@@ -2,8 +2,9 @@
 
 use super::path_segment;
 use crate::scene::description::{SceneDescription, Triple};
+use crate::window::parameter::parameter;
 use crate::window::structure::{self, Part};
-use crate::window::widgets::{parameter, pick_one, row};
+use crate::window::widgets::{pick_one, row};
 use egui::Ui;
 
 /// A name being typed for a part.

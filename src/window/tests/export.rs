@@ -11,7 +11,7 @@ use crate::session::develop::develop;
 use crate::threads;
 use crate::tone_mapping::srgb_bytes;
 use crate::window::app::App;
-use crate::window::export::{Destination, ExportSize};
+use crate::window::export_settings::{Destination, ExportSize};
 use egui::{Key, Modifiers, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;

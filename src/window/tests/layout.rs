@@ -1,19 +1,22 @@
 //! Nothing overlaps, is cut off or leaves the window, small and large, menus and boxes too.
 
-use super::whole::{scene_file, window_at};
+use super::whole::{scene_file, wait_until, window_at};
 use crate::window::app::App;
-use egui::{Key, Modifiers, Rect, Role};
+use crate::window::dialogs::Purpose;
+use egui::{Key, Modifiers, Rect, Role, ThemePreference};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use std::path::Path;
 
-/// Sizes in pixels, with how many of them make a point. The smallest is 1024x700 points.
-const SIZES: [([f32; 2], f32); 5] = [
-    ([1024.0, 700.0], 1.0),
-    ([1920.0, 1080.0], 1.0),
-    ([3840.0, 2160.0], 1.0),
-    ([2048.0, 1400.0], 2.0),
-    ([3840.0, 2160.0], 2.0),
+/// Sizes in pixels, how many of them make a point, and a theme. The smallest is 1024x700 points.
+type Look = ([f32; 2], f32, ThemePreference);
+const LOOKS: [Look; 6] = [
+    ([1024.0, 700.0], 1.0, ThemePreference::Dark),
+    ([1024.0, 700.0], 1.0, ThemePreference::Light),
+    ([1920.0, 1080.0], 1.0, ThemePreference::Light),
+    ([3840.0, 2160.0], 1.0, ThemePreference::Dark),
+    ([2048.0, 1400.0], 2.0, ThemePreference::Dark),
+    ([3840.0, 2160.0], 2.0, ThemePreference::Light),
 ];
 /// What a hand can use, and the picture.
 const ROLES: [Role; 9] = [
@@ -28,9 +31,12 @@ const ROLES: [Role; 9] = [
     Role::Canvas,
 ];
 
-/// A window of that many pixels on the scene at that path.
-fn at(path: &Path, (pixels, per_point): ([f32; 2], f32)) -> Harness<'static, App> {
-    window_at(path, pixels.map(|n| n / per_point), per_point)
+/// A window that looks so, on the scene at that path.
+fn at(path: &Path, (pixels, per_point, theme): Look) -> Harness<'static, App> {
+    let harness = window_at(path, pixels.map(|n| n / per_point), per_point, theme);
+    let is_dark = harness.ctx.global_style().visuals.dark_mode;
+    assert_eq!(is_dark, theme == ThemePreference::Dark, "another theme");
+    harness
 }
 
 /// Every control with its name and place.
@@ -45,13 +51,15 @@ fn controls(harness: &Harness<'_, App>) -> Vec<(String, Rect)> {
         .collect()
 }
 
-/// Every control and every text.
+/// Every control, every text and every picture.
 fn everything(harness: &Harness<'_, App>) -> Vec<(String, Rect)> {
-    let texts = harness.query_all_by_role(Role::Label).map(|node| {
+    let texts = harness.query_all_by_role(Role::Label);
+    let pictures = harness.query_all_by_role(Role::Image);
+    let others = texts.chain(pictures).map(|node| {
         let label = node.accesskit_node().label().or(node.accesskit_node().value());
         (label.unwrap_or_default(), node.rect())
     });
-    controls(harness).into_iter().chain(texts).collect()
+    controls(harness).into_iter().chain(others).collect()
 }
 
 fn open_all(harness: &mut Harness<'_, App>) {
@@ -83,7 +91,7 @@ fn assert_inside(all: &[(String, Rect)], window: Rect, what: &str) {
 #[test]
 fn every_control_is_named() {
     let folder = tempfile::tempdir().unwrap();
-    let mut harness = at(&scene_file(folder.path()), SIZES[0]);
+    let mut harness = at(&scene_file(folder.path()), LOOKS[0]);
     open_all(&mut harness);
     for (name, rect) in controls(&harness) {
         assert!(!name.trim().is_empty(), "a control at {rect:?} has no name");
@@ -96,7 +104,7 @@ fn every_control_is_named() {
 fn nothing_of_the_panel_and_the_bars_leaves_the_window_or_overlaps() {
     let folder = tempfile::tempdir().unwrap();
     let path = scene_file(folder.path());
-    for size in SIZES {
+    for size in LOOKS {
         let mut harness = at(&path, size);
         open_all(&mut harness);
         let window = harness.ctx.content_rect();
@@ -124,7 +132,7 @@ fn nothing_of_the_panel_and_the_bars_leaves_the_window_or_overlaps() {
 fn the_picture_takes_what_the_bars_and_the_panel_leave() {
     let folder = tempfile::tempdir().unwrap();
     let path = scene_file(folder.path());
-    for size in SIZES {
+    for size in LOOKS {
         let harness = at(&path, size);
         let picture = harness.get_by_role_and_label(Role::Canvas, "Picture").rect();
         let share = picture.area() / harness.ctx.content_rect().area();
@@ -141,7 +149,7 @@ fn new_ones(harness: &Harness<'_, App>, before: &[(String, Rect)]) -> Vec<(Strin
 fn menus_open_whole_and_their_lines_lie_apart() {
     let folder = tempfile::tempdir().unwrap();
     let path = scene_file(folder.path());
-    for size in SIZES {
+    for size in LOOKS {
         for (menu, submenu, least) in [("File", Some("Recent"), 9), ("View", Some("Theme"), 10)] {
             let mut harness = at(&path, size);
             let window = harness.ctx.content_rect();
@@ -166,30 +174,57 @@ fn menus_open_whole_and_their_lines_lie_apart() {
     }
 }
 
+/// Something that opens a box or a page.
+type Opening = fn(&mut Harness<'_, App>);
+
+const BOXES: [(&str, Opening); 9] = [
+    ("the help", |harness| harness.key_press(Key::H)),
+    ("the box that renders", |harness| harness.key_press_modifiers(Modifiers::SHIFT, Key::F12)),
+    ("the start page", |harness| harness.key_press_modifiers(Modifiers::COMMAND, Key::G)),
+    ("the question about edits", |harness| {
+        harness.key_press(Key::D);
+        harness.run_steps(2);
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::W);
+    }),
+    ("the box for a path", |harness| {
+        harness.state_mut().dialogs.type_path(Purpose::Open, "");
+    }),
+    ("the offer of a copy", |harness| harness.state_mut().recovery.pretend_to_find("copy.png")),
+    ("the pinned picture", |harness| {
+        wait_until(harness, |app| app.picture_on_show().is_some());
+        harness.key_press(Key::X);
+        harness.run_steps(2);
+        for key in [Key::D, Key::E, Key::T] {
+            harness.key_press(key);
+            harness.run_steps(2);
+        }
+    }),
+    ("a view with its legend", |harness| {
+        harness.key_press(Key::Num4);
+        wait_until(harness, |app| app.picture.legend().is_some());
+    }),
+    ("messages", |harness| {
+        let toasts = &mut harness.state_mut().toasts;
+        toasts.fail("/a/rather/long/path/to/a/scene.toml:12:7: there is no material \"glaze\"");
+        toasts.warn("something was repaired");
+        toasts.say("saved");
+    }),
+];
+
 #[test]
 fn boxes_and_pages_are_whole_and_their_parts_lie_apart() {
     let folder = tempfile::tempdir().unwrap();
     let path = scene_file(folder.path());
-    let cases: [(&str, Key, Modifiers); 4] = [
-        ("the help", Key::H, Modifiers::NONE),
-        ("the box that renders", Key::F12, Modifiers::SHIFT),
-        ("the start page", Key::G, Modifiers::COMMAND),
-        ("the question about edits", Key::W, Modifiers::COMMAND),
-    ];
-    for size in SIZES {
-        for (what, key, modifiers) in cases {
+    for size in LOOKS {
+        for (what, open) in BOXES {
             let mut harness = at(&path, size);
-            if what == "the question about edits" {
-                harness.key_press(Key::D);
-                harness.run_steps(2);
-            }
             let before = everything(&harness);
-            harness.key_press_modifiers(modifiers, key);
+            open(&mut harness);
             harness.run_steps(4);
             harness.check_accessibility();
             let window = harness.ctx.content_rect();
             let mut parts = new_ones(&harness, &before);
-            assert!(3 <= parts.len(), "{what} at {size:?} shows {parts:?}");
+            assert!(!parts.is_empty(), "{what} at {size:?} shows nothing");
             let what = format!("{what} at {size:?}");
             if what.contains("page") || what.contains("help") {
                 // They scroll where the window is low.
@@ -200,5 +235,34 @@ fn boxes_and_pages_are_whole_and_their_parts_lie_apart() {
             parts.retain(|(name, _)| !path.ends_with(name) && !name.starts_with('/'));
             assert_apart(&parts, &what);
         }
+    }
+}
+
+#[test]
+fn figures_however_long_leave_the_panel_as_wide_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene_file(folder.path());
+    for look in LOOKS {
+        let mut harness = at(&path, look);
+        open_all(&mut harness);
+        let picture = |harness: &Harness<'_, App>| {
+            harness.get_by_role_and_label(Role::Canvas, "Picture").rect()
+        };
+        let before = picture(&harness);
+        let scene = &mut harness.state_mut().document.description;
+        scene.camera.eye = [-0.123456789, -12345.678912, 1234567.891];
+        scene.camera.target = [-1.0 / 3.0, -1.234e-7, -9.87654321e22];
+        scene.camera.focal_distance = Some(1234.56789);
+        scene.camera.aperture_radius = 0.0123456789;
+        scene.lights[0].position = [-100.0 / 3.0, -1000.0 / 3.0, -10000.0 / 3.0];
+        scene.lights[0].power = [123456.789, 1.0, 0.1];
+        scene.objects[0].rotate = [-123.456, -0.0123456, 359.87654];
+        scene.tone_mapping.exposure = -12.3456;
+        harness.run_steps(6);
+        assert_eq!(picture(&harness), before, "the panel grows at {look:?}");
+        let mut panel = everything(&harness);
+        let visible = |rect: &Rect| before.top() <= rect.top() && rect.bottom() <= before.bottom();
+        panel.retain(|(_, rect)| visible(rect));
+        assert_apart(&panel, &format!("long figures at {look:?}"));
     }
 }

@@ -1,8 +1,12 @@
 //! The window driven by label and role, without a display.
 
+mod bench;
+mod editing;
 mod export;
 mod extremes;
 mod layout;
+mod loading;
+mod navigation;
 mod panels;
 pub(in crate::window) mod parameters;
 mod promises;

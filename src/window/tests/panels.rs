@@ -1,135 +1,17 @@
 //! Each control of the panels changes the parameter that it names, and no other.
 
+use super::bench::{
+    ALL, CAMERA, DISPLAY, LIGHTS, MATERIALS, OBJECTS, RENDER, TEXTURES, choose, harness, press,
+    slide, type_figure,
+};
 use super::small_scene;
 use crate::scene::description::{
-    ColorOrTexture, IntegratorKind, LightKind, SceneDescription, ToneOperator, WardForm,
+    ColorOrTexture, IntegratorKind, LightKind, ToneOperator, WardForm,
 };
-use crate::window::panels::{
-    Convergence, DisplayState, Limits, PickFor, RenderFacts, Selection, SizeMode, camera_ui,
-    display_ui, lights_ui, materials_ui, objects_ui, render_ui, textures_ui,
-};
-use crate::window::theme;
+use crate::window::panels::SizeMode;
 use crate::window::views::View;
-use crate::window::widgets::take_reset;
 use egui::Role;
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-
-/// What a panel under test edits.
-pub(super) struct Bench {
-    pub(super) scene: SceneDescription,
-    pub(super) selection: Selection,
-    size_mode: SizeMode,
-    accelerator: usize,
-    n_threads: usize,
-    display: DisplayState,
-    unit_mm: f64,
-    picking: Option<PickFor>,
-    lights_shown: bool,
-    lens_shown: bool,
-    limits: Limits,
-}
-
-pub(super) type Panel = fn(&mut egui::Ui, &mut Bench);
-
-const CAMERA: Panel = |ui, bench| {
-    let (unit, picking) = (&mut bench.unit_mm, &mut bench.picking);
-    camera_ui(ui, &mut bench.scene.camera, unit, picking, &mut bench.lens_shown);
-};
-const LIGHTS: Panel = |ui, bench| {
-    let (picking, shown) = (&mut bench.picking, &mut bench.lights_shown);
-    lights_ui(ui, &mut bench.scene, &mut bench.selection, picking, shown);
-};
-const MATERIALS: Panel =
-    |ui, bench| materials_ui(ui, &mut bench.scene, &mut bench.selection, |_, _, _| ());
-const TEXTURES: Panel =
-    |ui, bench| textures_ui(ui, &mut bench.scene, &mut bench.selection, |_, _| ());
-const OBJECTS: Panel = |ui, bench| objects_ui(ui, &mut bench.scene, &mut bench.selection);
-const DISPLAY: Panel =
-    |ui, bench| display_ui(ui, &mut bench.scene.tone_mapping, &mut bench.display, None);
-const RENDER: Panel = |ui, bench| {
-    let facts = RenderFacts {
-        n_processors: 4,
-        accelerators: &["kd-tree", "brute-force"],
-        tree: vec![("Nodes", "12".to_owned())],
-        convergence: Convergence {
-            noise: &[(1, 20.0), (4, 10.0)],
-            seconds: 1.0,
-            is_rendering: true,
-        },
-    };
-    let (size, accelerator) = (&mut bench.size_mode, &mut bench.accelerator);
-    let limits = &mut bench.limits;
-    let threads = &mut bench.n_threads;
-    render_ui(ui, &mut bench.scene.render, size, accelerator, threads, limits, &facts);
-};
-pub(super) const ALL: [Panel; 7] = [CAMERA, LIGHTS, MATERIALS, TEXTURES, OBJECTS, DISPLAY, RENDER];
-
-fn harness(panel: Panel) -> Harness<'static, Bench> {
-    harness_of(panel, bench(small_scene()))
-}
-
-/// What edits that scene, with nothing chosen.
-pub(super) fn bench(scene: SceneDescription) -> Bench {
-    Bench {
-        scene,
-        selection: Selection::default(),
-        size_mode: SizeMode::Fixed,
-        accelerator: 0,
-        n_threads: 1,
-        display: DisplayState::default(),
-        unit_mm: 100.0,
-        picking: None,
-        lights_shown: false,
-        lens_shown: false,
-        limits: Limits::default(),
-    }
-}
-
-/// A panel by itself, as wide as in the window.
-pub(super) fn harness_of(panel: Panel, bench: Bench) -> Harness<'static, Bench> {
-    let mut installed = false;
-    let mut harness = Harness::builder().with_size([320.0, 1200.0]).build_ui_state(
-        move |ui, bench: &mut Bench| {
-            if !std::mem::replace(&mut installed, true) {
-                theme::install(ui.ctx());
-            }
-            panel(ui, bench);
-            take_reset(ui.ctx(), &mut bench.scene).expect("a reset keeps the scene valid");
-        },
-        bench,
-    );
-    harness.run();
-    harness
-}
-
-/// Types a figure into the box of that name.
-fn type_figure(harness: &mut Harness<'_, Bench>, label: &str, text: &str) {
-    harness.get_by_role_and_label(Role::SpinButton, label).click();
-    harness.run();
-    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
-    harness.event(egui::Event::Text(text.to_owned()));
-    harness.key_press(egui::Key::Enter);
-    harness.run();
-}
-
-fn slide(harness: &mut Harness<'_, Bench>, label: &str, value: f64) {
-    harness.get_by_role_and_label(Role::Slider, label).set_value_accesskit(value);
-    harness.run();
-}
-
-/// Chooses from the list of that name.
-fn choose(harness: &mut Harness<'_, Bench>, label: &str, option: &str) {
-    harness.get_by_role_and_label(Role::ComboBox, label).click();
-    harness.run();
-    harness.get_by_role_and_label(Role::Button, option).click();
-    harness.run();
-}
-
-fn press(harness: &mut Harness<'_, Bench>, label: &str) {
-    harness.get_by_role_and_label(Role::Button, label).click();
-    harness.run();
-}
 
 #[test]
 fn showing_a_panel_changes_nothing() {
@@ -363,4 +245,16 @@ fn a_mesh_is_entered_by_its_path() {
     type_figure(&mut harness, "Scale Y", "2");
     let scale = harness.state().scene.objects[0].scale.triple();
     assert_eq!(scale, [1.0, 2.0, 1.0], "another scale");
+}
+
+#[test]
+fn a_path_half_typed_is_let_go_by_escape() {
+    let mut harness = harness(OBJECTS);
+    harness.get_by_role_and_label(Role::TextInput, "Mesh file").click();
+    harness.run();
+    harness.event(egui::Event::Text("meshes/egg.obj".to_owned()));
+    harness.run();
+    harness.key_press(egui::Key::Escape);
+    harness.run();
+    assert_eq!(harness.state().scene, small_scene(), "it was taken over");
 }

@@ -1,6 +1,6 @@
 //! Every parameter of a scene file has a control, and a control changes its own parameter only.
 
-use super::panels::{ALL, Bench, bench, harness_of};
+use super::bench::{ALL, Bench, bench, harness_of};
 use super::small_scene;
 use crate::io::scene_file::{self, Rule, Section};
 use crate::scene::description::{

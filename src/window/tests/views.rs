@@ -2,9 +2,10 @@
 //! fine screens.
 
 use super::whole::{drag, scene_file, wait_until, window, window_at};
+use crate::scene::description::ColorOrTexture;
 use crate::window::app::App;
 use crate::window::views::View;
-use egui::{Key, Role};
+use egui::{Key, Role, ThemePreference};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
@@ -144,7 +145,7 @@ fn pictures_are_rendered_in_the_pixels_of_the_screen() {
     let folder = tempfile::tempdir().unwrap();
     let path = scene_file(folder.path());
     for per_point in [1.0, 1.5, 2.0] {
-        let mut harness = window_at(&path, [700.0, 460.0], per_point);
+        let mut harness = window_at(&path, [700.0, 460.0], per_point, ThemePreference::Dark);
         wait_until(&mut harness, |app| {
             let image = app.picture_on_show().map(|image| image.size[0]);
             is_done(app) && image == Some(app.viewport.size[0] as usize)
@@ -165,4 +166,35 @@ fn pictures_are_rendered_in_the_pixels_of_the_screen() {
         let scroll = harness.state().interface.display.scroll;
         assert_eq!((scroll.x, scroll.y), (1.0, 0.5), "the bar moves the picture elsewhere");
     }
+}
+
+#[test]
+fn a_click_shows_the_object_and_its_material_in_the_panel() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&scene_file(folder.path()), [1400.0, 900.0]);
+    wait_until(&mut harness, |app| app.picture_on_show().is_some());
+    let scene = &mut harness.state_mut().document.description;
+    // One that is not there, before the one that is.
+    let mut absent = scene.objects[0].clone();
+    absent.name = "absent".to_owned();
+    absent.enabled = false;
+    scene.objects.insert(0, absent);
+    scene.objects[1].material = Some("plain".to_owned());
+    scene.materials[1].diffuse = ColorOrTexture::Texture("waves".to_owned());
+    let mut waves = scene.textures[0].clone();
+    waves.name = "waves".to_owned();
+    scene.textures.push(waves);
+    let before = scene.clone();
+    harness.run_steps(3);
+    let picture = harness.get_by_role_and_label(Role::Canvas, "Picture").rect();
+    for (at, object) in [(picture.left_top() + egui::vec2(4.0, 4.0), 0), (picture.center(), 1)] {
+        harness.drag_at(at);
+        harness.run_steps(1);
+        harness.drop_at(at);
+        harness.run_steps(2);
+        wait_until(&mut harness, |app| app.awaited_click.is_none());
+        let chosen = &harness.state().interface.selection;
+        assert_eq!((chosen.object, chosen.material, chosen.texture), (object, object, object));
+    }
+    assert_eq!(harness.state().document.description, before, "a click is an edit");
 }

@@ -2,9 +2,9 @@
 
 use crate::loader::Source;
 use crate::window::app::App;
-use crate::window::state::Remembered;
+use crate::window::state::{InterfaceState, Remembered};
 use crate::window::theme;
-use egui::Role;
+use egui::{Role, ThemePreference};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use std::io::Write as _;
@@ -47,9 +47,15 @@ pub(super) fn window_of(
     build(path, size, 1.0, remembered, None)
 }
 
-/// The same with that many pixels in a point; `size` is in points.
-pub(super) fn window_at(path: &Path, size: [f32; 2], per_point: f32) -> Harness<'static, App> {
-    build(path, size, per_point, Remembered::default(), None)
+/// The same with that many pixels in a point, in a theme; `size` is in points.
+pub(super) fn window_at(
+    path: &Path,
+    size: [f32; 2],
+    per_point: f32,
+    theme: ThemePreference,
+) -> Harness<'static, App> {
+    let state = InterfaceState { theme, ..InterfaceState::default() };
+    build(path, size, per_point, Remembered::of(&state), None)
 }
 
 fn build(

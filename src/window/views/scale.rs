@@ -1,6 +1,6 @@
 //! How figures become places on a ramp of colours, and which of them are written beside it.
 
-use crate::window::widgets::short;
+use crate::window::figures::short;
 
 /// From a figure to its place on the ramp, 0..=1. The ends are round figures, so that they stand
 /// still while the picture changes a little.
