@@ -213,20 +213,24 @@ fn slope(curve: &[Point]) -> f64 {
 fn report(folder: &Path, options: &Options, all: &[Measured]) -> Result<(), Failure> {
     let columns: Vec<u32> =
         (1..=6).map(|k| 4_u32.pow(k)).filter(|n| *n <= options.samples).collect();
+    let (place, tiles) = match options.tiles {
+        Some(n) => (format!("{n} tiles of 16 x 16 pixels of pictures"), format!("--tiles {n} ")),
+        None => ("pictures".to_owned(), String::new()),
+    };
     let mut text = format!(
         "# Convergence\n\nRoot mean squared error of linear luminance in percent of its mean, for the scenes \
-         of the gallery in pictures {} wide, written by\n\n```sh\ncargo bench --bench convergence -- --width {} \
+         of the gallery in {} {} wide, written by\n\n```sh\ncargo bench --bench convergence -- --width {} {}\
          --samples {} --report docs\n```\n\n\
          The slope is that of log error over log samples from 16 samples on; the gain is the squared \
          error of \"random\" over that of the row at 64 samples; the last column is the least and the \
          most that the renderer's own noise figure says, over the truth, which two pictures of so few pixels \
          tell no better than to a tenth or two.\n\
-         In so small a picture a pixel covers a whole edge of a shadow or a circle of confusion; in one of \
+         In a small picture a pixel covers a whole edge of a shadow or a circle of confusion; in one of \
          full size it does not, and Sobol points gain more: see \
          [what bounds the slope](correctness.md#how-fast-the-error-falls).\n\n\
          ![Error against samples](convergence-samples.svg)\n\n\
          ![Error against seconds](convergence-seconds.svg)\n\n| scene | sampler |",
-        options.width, options.width, options.samples
+        place, options.width, options.width, tiles, options.samples
     );
     for n in &columns {
         write!(text, " {n} |")?;
