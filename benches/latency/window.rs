@@ -69,7 +69,7 @@ fn frames(window: &mut Headless, is_dragging: bool) -> String {
     window.frame();
     upload.resize(upload.len().max(1), 0.0);
     format!(
-        "\"ui_ms\":{},\"ui_cpu_ms\":{},\"pictures\":{n_pictures},\"copy_for_upload_ms\":{}",
+        "\"ui_ms\":{},\"ui_cpu_ms\":{},\"full_size_pictures\":{n_pictures},\"copy_for_upload_ms\":{}",
         percentiles(&mut wall),
         percentiles(&mut cpu),
         quantiles(&mut upload)
