@@ -25,7 +25,9 @@ struct Shared {
 #[derive(Default)]
 struct List {
     paths: Vec<PathBuf>,
-    /// Counts the lists; the thread takes fresh stamps for a new one.
+    /// Of the files when the list was made: what changes before the thread's first look counts.
+    stamps: Vec<Stamp>,
+    /// Counts the lists.
     number: u64,
     has_news: bool,
     closing: bool,
@@ -48,8 +50,10 @@ impl Watcher {
 
     /// Watches these files, as they are now, instead of those before.
     pub(super) fn watch(&self, paths: Vec<PathBuf>) {
+        let stamps = paths.iter().map(stamp).collect();
         let mut list = self.shared.lock();
         list.paths = paths;
+        list.stamps = stamps;
         list.number += 1;
         list.has_news = false;
         drop(list);
@@ -83,10 +87,11 @@ impl Shared {
         let mut known: Vec<Stamp> = Vec::new();
         let mut pending: Option<Vec<Stamp>> = None;
         while let Some((paths, current)) = self.next_look() {
-            let stamps: Vec<Stamp> = paths.iter().map(stamp).collect();
             if current != number {
-                (number, known, pending) = (current, stamps, None);
-            } else if pending.as_ref() == Some(&stamps) {
+                (number, known, pending) = (current, self.lock().stamps.clone(), None);
+            }
+            let stamps: Vec<Stamp> = paths.iter().map(stamp).collect();
+            if pending.as_ref() == Some(&stamps) {
                 // It changed and has rested since.
                 (known, pending) = (stamps, None);
                 self.lock().has_news = true;
