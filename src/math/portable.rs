@@ -15,22 +15,6 @@ portable! {
     sin(x) -> f32 = libm::sinf;
     /// Cosine.
     cos(x) -> f32 = libm::cosf;
-    /// Tangent.
-    tan(x) -> f32 = libm::tanf;
-    /// Arc sine, -π/2..=π/2; NaN outside -1..=1.
-    asin(x) -> f32 = libm::asinf;
-    /// Arc cosine, 0..=π; NaN outside -1..=1.
-    acos(x) -> f32 = libm::acosf;
-    /// Angle of the point (x, y), -π..=π.
-    atan2(y, x) -> f32 = libm::atan2f;
-    /// e to the x.
-    exp(x) -> f32 = libm::expf;
-    /// Natural logarithm.
-    ln(x) -> f32 = libm::logf;
-    /// Logarithm to base 2.
-    log2(x) -> f32 = libm::log2f;
-    /// x to the y.
-    pow(x, y) -> f32 = libm::powf;
     /// 2 to the x.
     exp2(x) -> f32 = libm::exp2f;
     /// Sine.

@@ -142,4 +142,20 @@ mod tests {
         assert!(watcher.take_news(), "woken without news");
         assert!(!watcher.take_news(), "the same news twice");
     }
+
+    /// Before the thread has looked for the first time.
+    #[test]
+    fn a_file_changed_at_once_is_noticed_too() {
+        let folder = tempfile::tempdir().unwrap();
+        let (sender, woken) = channel();
+        let watcher = Watcher::new(move || sender.send(()).unwrap()).unwrap();
+        for round in 0..3 {
+            let path = folder.path().join(format!("{round}.toml"));
+            std::fs::write(&path, "one").unwrap();
+            watcher.watch(vec![path.clone()]);
+            std::fs::write(&path, "three").unwrap();
+            woken.recv_timeout(Duration::from_secs(20)).expect("the change is noticed");
+            assert!(watcher.take_news(), "woken without news");
+        }
+    }
 }
