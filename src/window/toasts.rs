@@ -52,6 +52,13 @@ impl Toasts {
         self.push(text.into(), Kind::Warning);
     }
 
+    /// Takes back what was said, where it is still there: it is so no longer.
+    pub(super) fn settle(&mut self, said: &mut Option<String>) {
+        if let Some(text) = said.take() {
+            self.shown.retain(|toast| toast.text != text);
+        }
+    }
+
     /// Closes the newest message. False where there was none.
     pub(super) fn dismiss(&mut self) -> bool {
         self.shown.pop().is_some()

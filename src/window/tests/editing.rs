@@ -258,7 +258,7 @@ fn a_copy_of_edits_goes_once_they_are_saved_or_let_go() {
     drop(harness);
     let mut harness = window_with(&path, SIZE, Some(own));
     press(&mut harness, "Restore it");
-    wait_until(&mut harness, |app| app.files.title == "recovery-1");
+    wait_until(&mut harness, |app| app.files.title == "restored");
     assert!(harness.query_by_label("Restore it").is_none(), "the restored one is offered again");
     assert!(harness.state().document.is_dirty(), "what only the copy holds counts as saved");
     assert!(copy.is_file(), "the copy is gone before it is saved");

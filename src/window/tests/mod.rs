@@ -2,8 +2,10 @@
 
 mod bench;
 mod editing;
+mod every_control;
 mod export;
 mod extremes;
+mod keys;
 mod layout;
 mod loading;
 mod navigation;
@@ -11,6 +13,7 @@ mod panels;
 pub(in crate::window) mod parameters;
 mod promises;
 mod random_user;
+mod reload;
 mod start;
 mod views;
 mod whole;

@@ -2,6 +2,7 @@
 
 use crate::loader::Source;
 use crate::window::app::App;
+use crate::window::panels::SizeMode;
 use crate::window::state::{InterfaceState, Remembered};
 use crate::window::theme;
 use egui::{Role, ThemePreference};
@@ -67,7 +68,9 @@ fn build(
 ) -> Harness<'static, App> {
     let source = Source::File(path.to_owned());
     let ctx = egui::Context::default();
-    let app = App::new(&ctx, remembered, source, own).expect("the threads start");
+    // Pictures that fill the viewport, so that places in it are places in them.
+    let state = InterfaceState { size_mode: SizeMode::Fill, ..remembered.restore() };
+    let app = App::new(&ctx, Remembered::of(&state), source, own).expect("the threads start");
     harness_of(app, size, per_point)
 }
 
@@ -226,7 +229,7 @@ fn unsaved_edits_survive_a_crash() {
     let mut harness = window_with(&path, [1024.0, 700.0], Some(own));
     assert_ne!(harness.state().document.description, edited, "the file was saved");
     harness.get_by_role_and_label(Role::Button, "Restore it").click();
-    wait_until(&mut harness, |app| app.files.title == "recovery-1");
+    wait_until(&mut harness, |app| app.files.title == "restored");
     let restored = &harness.state().document.description;
     assert_eq!(*restored, edited, "the edits were lost");
 }
