@@ -4,7 +4,6 @@ use super::app::App;
 use super::compare::{CompareChoice, Pinned};
 use super::dialogs::Purpose;
 use super::export_dialog::{ExportChoice, ExportFacts, export_ui};
-use super::files::Pending;
 use super::help::{HelpChoice, help_ui};
 use super::keys::Action;
 use super::keys_file;
@@ -251,7 +250,7 @@ impl App {
         }
     }
 
-    fn save_scene(&mut self, ctx: &egui::Context) {
+    pub(super) fn save_scene(&mut self, ctx: &egui::Context) {
         match self.files.scene_path.clone() {
             Some(path) => self.save_to(ctx, path),
             None => self.files.ask_where_to_save(ctx, &mut self.dialogs),

@@ -21,14 +21,11 @@ use super::viewport::Click;
 use super::watch::Watcher;
 use super::work::RenderWork;
 use crate::document::Document;
-use crate::io::scene_file;
 use crate::loader::{Loader, Source};
 use crate::scene::description::{CameraDescription, SceneDescription};
-use crate::session::{Session, Wanted};
-use crate::threads;
+use crate::session::Session;
 use egui::Ui;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// The whole window.
 pub(super) struct App {
