@@ -47,6 +47,7 @@ impl App {
                     if *description == self.document.description {
                         self.document.mark_saved(&path);
                     }
+                    self.files.source = Some(Source::File(path.clone()));
                     self.files.scene_path = Some(path);
                     self.watch_files();
                     self.go_on(ctx);
@@ -218,6 +219,7 @@ impl App {
             description.camera = self.document.description.camera.clone();
         }
         self.home_camera = file_camera;
+        self.files.folder = loaded.folder;
         self.files.records = loaded.files;
         self.files.report = loaded.report;
         self.work.set_assets(Arc::new(loaded.assets));

@@ -210,6 +210,12 @@ fn closing_waits_for_an_answer_about_a_picture_at_work() {
     harness.run_steps(3);
     press(&mut harness, "Go on rendering");
     assert!(harness.state().exporter.progress().is_some(), "the picture is stopped");
+    ask_to_close(&mut harness);
+    harness.run_steps(3);
+    press_key(&mut harness, Modifiers::NONE, Key::Escape);
+    assert!(harness.query_by_label("Go on rendering").is_none(), "the question stays");
+    assert!(!harness.state().files.close_confirmed, "Escape closes the window");
+    assert!(harness.state().exporter.progress().is_some(), "Escape stops the picture");
 }
 
 #[test]
@@ -251,6 +257,8 @@ fn a_copy_of_edits_goes_once_they_are_saved_or_let_go() {
     drop(harness);
     let mut harness = window_with(&path, SIZE, Some(own.clone()));
     harness.run_steps(3);
+    // At once, whatever is unsaved already.
+    press_key(&mut harness, Modifiers::NONE, Key::E);
     press(&mut harness, "Let it go");
     assert!(!copy.exists(), "the copy that was let go stays");
     assert!(harness.query_by_label("Restore it").is_none(), "it is offered again");

@@ -1,6 +1,6 @@
 //! Keys beside menus, and keys that are held.
 
-use super::whole::{scene_file, wait_until, window};
+use super::whole::{scene_file, wait_until, window, window_with};
 use crate::window::app::App;
 use egui::{Event, Key, Modifiers, Role};
 use egui_kittest::Harness;
@@ -100,5 +100,23 @@ fn a_click_beside_an_open_menu_only_closes_it() {
         let told = harness.query_by_label_contains("the panel shows ball").is_some();
         assert_eq!(told, chooses, "the click went to the picture: {told}");
         assert!(harness.query_by_label_contains("Pin and compare").is_none(), "the menu stays");
+    }
+}
+
+#[test]
+fn keys_come_from_the_file_and_what_is_wrong_in_it_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene_file(folder.path());
+    let own = folder.path().join("own");
+    std::fs::create_dir(&own).unwrap();
+    std::fs::write(own.join("keys.toml"), "toggle-lens = \"L\"\npuase = \"P\"\n").unwrap();
+    let mut harness = window_with(&path, [1024.0, 700.0], Some(own));
+    assert!(harness.query_by_label_contains("did you mean pause?").is_some(), "not told");
+    let open = harness.state().document.description.camera.aperture_radius;
+    for (key, closes) in [(Key::D, false), (Key::L, true), (Key::L, false), (Key::D, false)] {
+        harness.key_press(key);
+        harness.run_steps(2);
+        let radius = harness.state().document.description.camera.aperture_radius;
+        assert_eq!(radius, if closes { 0.0 } else { open }, "{key:?} leaves another lens");
     }
 }

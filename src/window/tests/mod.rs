@@ -11,6 +11,7 @@ mod loading;
 mod navigation;
 mod panels;
 pub(in crate::window) mod parameters;
+mod picking;
 mod promises;
 mod random_user;
 mod reload;

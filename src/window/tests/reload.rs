@@ -4,7 +4,7 @@ use super::whole::{scene_file, wait_until, window, window_with};
 use crate::io::scene_file;
 use crate::scene::description::{ColorOrTexture, ObjectKind, TextureKind};
 use crate::window::app::App;
-use egui::{Key, Role};
+use egui::{Key, Modifiers, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use std::path::{Path, PathBuf};
@@ -101,4 +101,28 @@ fn a_restored_scene_is_kept_again_and_finds_its_files() {
             String::from_utf8_lossy(&kept).contains(&says)
         });
     }
+}
+
+#[test]
+fn files_are_watched_where_they_are_now_and_not_once_the_scene_is_closed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene_file(folder.path());
+    let mut harness = window(&path, SIZE);
+    assert!(harness.state().watcher.watches(&path), "the file is not watched");
+    let other = folder.path().join("other.toml");
+    let ctx = harness.ctx.clone();
+    harness.state_mut().save_to(&ctx, other.clone());
+    wait_until(&mut harness, |app| app.files.scene_path.as_ref() == Some(&other));
+    harness.run_steps(3);
+    assert!(harness.state().watcher.watches(&other), "the new file is not watched");
+    let text = std::fs::read_to_string(&other).unwrap();
+    std::fs::write(&other, text.replace("power = [100.0", "power = [7.0")).unwrap();
+    wait_until(&mut harness, |app| app.document.description.lights[0].power[0] == 7.0);
+    harness.state_mut().interface.navigation.pivot = Some([1.0; 3]);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::W);
+    harness.run_steps(3);
+    assert!(!harness.state().files.has_scene, "the scene is still open");
+    assert!(!harness.state().watcher.watches(&other), "a closed scene is watched");
+    let pivot = harness.state().interface.navigation.pivot;
+    assert_eq!(pivot, None, "the next scene is turned about a point of this one");
 }
