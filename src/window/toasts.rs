@@ -142,7 +142,11 @@ mod tests {
     #[test]
     fn a_message_is_shown_once_and_the_oldest_make_room() {
         let mut toasts = Toasts::default();
-        for text in ["a", "b", "b", "c", "d", "e"] {
+        for text in ["a", "b", "b"] {
+            toasts.say(text);
+        }
+        assert_eq!(toasts.shown.len(), 2, "the same is said twice");
+        for text in ["c", "d", "e"] {
             toasts.say(text);
         }
         let texts: Vec<&str> = toasts.shown.iter().map(|toast| toast.text.as_str()).collect();

@@ -28,6 +28,11 @@ fn scene_with_files(folder: &Path) -> PathBuf {
     path
 }
 
+fn press(harness: &mut Harness<'_, App>, label: &str) {
+    harness.get_by_role_and_label(Role::Button, label).click();
+    harness.run_steps(3);
+}
+
 fn has_said(harness: &Harness<'_, App>, text: &str) -> bool {
     harness.query_by_label_contains(text).is_some()
 }
@@ -125,4 +130,52 @@ fn files_are_watched_where_they_are_now_and_not_once_the_scene_is_closed() {
     assert!(!harness.state().watcher.watches(&other), "a closed scene is watched");
     let pivot = harness.state().interface.navigation.pivot;
     assert_eq!(pivot, None, "the next scene is turned about a point of this one");
+}
+
+#[test]
+fn a_copy_of_edits_goes_once_they_are_saved_or_let_go() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene_file(folder.path());
+    let own = folder.path().join("own");
+    std::fs::create_dir(&own).unwrap();
+    let copy = own.join("recovery-1.png");
+    let edit = |harness: &mut Harness<'_, App>| {
+        harness.key_press(Key::D);
+        harness.run_steps(80);
+        wait_until(harness, |_| copy.is_file());
+    };
+    let mut harness = window_with(&path, SIZE, Some(own.clone()));
+    edit(&mut harness);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    wait_until(&mut harness, |app| !app.document.is_dirty());
+    harness.run_steps(3);
+    assert!(!copy.exists(), "the copy of what is saved stays");
+    edit(&mut harness);
+    drop(harness);
+    let mut harness = window_with(&path, SIZE, Some(own.clone()));
+    harness.run_steps(3);
+    let left_behind = std::fs::read(&copy).unwrap();
+    // Unsaved already, while the offer is open.
+    harness.key_press(Key::E);
+    harness.run_steps(80);
+    assert_eq!(std::fs::read(&copy).unwrap(), left_behind, "the copy on offer is overwritten");
+    press(&mut harness, "Let it go");
+    wait_until(&mut harness, |_| {
+        std::fs::read(&copy).is_ok_and(|kept| !kept.is_empty() && kept != left_behind)
+    });
+    assert!(harness.query_by_label("Restore it").is_none(), "it is offered again");
+    edit(&mut harness);
+    drop(harness);
+    let mut harness = window_with(&path, SIZE, Some(own));
+    press(&mut harness, "Restore it");
+    wait_until(&mut harness, |app| app.files.title == "restored");
+    assert!(harness.query_by_label("Restore it").is_none(), "the restored one is offered again");
+    assert!(harness.state().document.is_dirty(), "what only the copy holds counts as saved");
+    assert!(copy.is_file(), "the copy is gone before it is saved");
+    let saved = folder.path().join("saved.toml");
+    let ctx = harness.ctx.clone();
+    harness.state_mut().save_to(&ctx, saved);
+    wait_until(&mut harness, |app| !app.document.is_dirty());
+    harness.run_steps(3);
+    assert!(!copy.exists(), "the copy of what is saved stays");
 }
