@@ -103,9 +103,9 @@ impl<I: Isa> Group<I> {
         }
     }
 
-    /// Whether some ray touches a box before its limit.
+    /// Which rays touch a box before their limits, and where they enter it.
     #[inline(always)]
-    pub(super) fn touches(&self, node: &Node, child: usize) -> bool {
+    pub(super) fn touches(&self, node: &Node, child: usize) -> (u32, I::F16) {
         let (mut enter, mut leave) = (I::F16::splat(0.0), self.limit);
         for axis in 0..3 {
             let lower = I::F16::splat(node.bounds[axis][child]);
@@ -118,7 +118,7 @@ impl<I: Isa> Group<I> {
             enter = near.mul_sub(self.reciprocal[axis], self.near_origin[axis]).max(enter);
             leave = far.mul_sub(self.reciprocal[axis], self.far_origin[axis]).min(leave);
         }
-        enter.le(leave) != 0
+        (enter.le(leave), enter)
     }
 
     /// Offers what the rays meet in a block; tells whether a limit changed.

@@ -11,6 +11,7 @@ mod descent;
 mod group;
 mod leaf;
 mod packet;
+mod sharing;
 mod single;
 mod stream;
 
@@ -19,7 +20,7 @@ use std::sync::atomic::AtomicBool;
 
 use glam::Vec3;
 
-use crate::geometry::lanes::Portable;
+use crate::geometry::lanes::{Isa, Portable};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::nearest::{Nearest, Search};
 use crate::geometry::wide_bvh::stream::{Fleet, TakeAny, TakeNearest};
@@ -137,6 +138,16 @@ impl WideBvh {
         let (tree, root) = build::build(mesh, stop)?;
         let magnitude = mesh.bounds().max_abs();
         Ok(Self { nodes: tree.nodes, blocks: tree.blocks, root, magnitude })
+    }
+
+    /// Has a node or a block fetched.
+    #[inline(always)]
+    fn prefetch<I: Isa>(&self, reference: u32) {
+        if reference & LEAF == 0 {
+            I::prefetch(&self.nodes[reference as usize]);
+        } else {
+            I::prefetch(&self.blocks[(reference & !LEAF) as usize]);
+        }
     }
 
     /// Number of nodes.
