@@ -25,14 +25,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::color::Rgb;
 use crate::geometry::kd_tree::{Item, KdTree, Split, Walk};
-use crate::geometry::nearest::{Nearest, Search};
+use crate::geometry::nearest::Search;
 use crate::geometry::select::Selector;
 use crate::math::{Aabb, PrimitiveId, Ray, RayBatch};
 
 pub use cost::TraversalCost;
 pub use instance::Instance;
 pub use mesh_tree::{MeshTree, TracedMesh};
-pub use nearest::Hit;
+pub use nearest::{Hit, Nearest};
 pub use shape::Shape;
 pub use surface::Surface;
 pub(crate) use surface::{HitBlock, SurfaceBlock};
@@ -198,9 +198,10 @@ impl Geometry {
         statistics
     }
 
-    /// What each ray meets first; `hits` is overwritten, one entry a ray.
-    pub fn intersect(&self, rays: &RayBatch, hits: &mut Vec<Option<Hit>>) {
-        let mut nearest: Vec<Nearest> = rays.t_max.iter().map(|t| Nearest::new(*t)).collect();
+    /// What each ray meets first; `nearest` is overwritten, one entry a ray.
+    pub fn intersect(&self, rays: &RayBatch, nearest: &mut Vec<Nearest>) {
+        nearest.clear();
+        nearest.extend(rays.t_max.iter().map(|t| Nearest::new(*t)));
         let mut selector = Selector::new(rays);
         // Of what was found so far; from the first box on.
         let mut limits: Vec<f32> = Vec::new();
@@ -208,7 +209,7 @@ impl Geometry {
         for id in &self.listed {
             let instance = &self.instances[*id as usize];
             let Some(bounds) = self.box_of(instance) else {
-                instance.intersect_batch(rays, *id, self.kind, &mut nearest);
+                instance.intersect_batch(rays, *id, self.kind, nearest);
                 limits.clear();
                 continue;
             };
@@ -236,8 +237,6 @@ impl Geometry {
                 *nearest = search.nearest;
             }
         }
-        hits.clear();
-        hits.extend(nearest.iter().map(Nearest::hit));
     }
 
     /// Whether anything lies between the ends of each ray; `blocked` is overwritten.

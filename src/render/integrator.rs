@@ -19,7 +19,7 @@ use std::ops::Range;
 use glam::{Vec2, Vec3};
 
 use crate::color::Rgb;
-use crate::geometry::{Hit, HitBlock};
+use crate::geometry::{Hit, HitBlock, Nearest};
 use crate::math::sampler::{Net, NumbersBlock, SampleNumbers, Sampler};
 use crate::math::vectorized::{BLOCK, Lane, Lane3, NO_LANES, set_vec3, vec3};
 use crate::math::{PrimitiveId, RayBatch};
@@ -100,7 +100,7 @@ pub(super) struct TileRenderer<'a> {
     radiance: Vec<Rgb>,
     rays: RayBatch,
     paths: Vec<Path>,
-    hits: Vec<Option<Hit>>,
+    hits: Vec<Nearest>,
     next_rays: RayBatch,
     next_paths: Vec<Path>,
     groups: Groups,
@@ -232,7 +232,7 @@ impl<'a> TileRenderer<'a> {
                 block.n = n;
                 for i in 0..BLOCK {
                     let index = self.groups.path(places.start + i.min(n - 1)) as usize;
-                    if let Some(hit) = self.hits[index] {
+                    if let Some(hit) = self.hits[index].hit() {
                         block.set(i, &self.rays, index, self.paths[index], hit);
                     }
                 }

@@ -131,15 +131,18 @@ impl<I: Isa> Group<I> {
                 break;
             }
             let Some((mut mask, t)) = self.hits::<T>(block, corner) else { continue };
-            let (mut parameters, mut limits) = ([0.0; LANES], [0.0; LANES]);
+            let mut parameters = [0.0; LANES];
             t.store(&mut parameters);
-            self.limit.store(&mut limits);
+            let mut taken = 0;
             while mask != 0 {
-                let lane = mask.trailing_zeros() as usize;
+                let lane = mask.trailing_zeros() as usize % LANES;
                 mask &= mask - 1;
-                limits[lane] = hits.take(first + lane, parameters[lane], id);
+                let limit = hits.take(first + lane, parameters[lane], id);
+                taken |= u32::from(limit <= parameters[lane]) << lane;
             }
-            self.limit = I::F16::load(&limits);
+            // What is taken ends there, or at once where any hit will do.
+            let limit = if T::SORTED { t } else { I::F16::splat(-1.0) };
+            self.limit = self.limit.blend(limit, taken);
             is_changed = true;
         }
         is_changed

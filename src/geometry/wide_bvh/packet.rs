@@ -116,10 +116,10 @@ impl<I: Isa> Packet<I> {
     /// Takes on the rays `first..first + n` of a batch.
     #[inline(always)]
     fn start<T: Take>(&mut self, bvh: &WideBvh, rays: &RayBatch, first: usize, n: usize, hits: &T) {
-        let zero = I::F16::splat(0.0);
         self.n_groups = n.div_ceil(LANES);
         self.first = first;
         self.farthest = -1.0;
+        let zero = I::F16::splat(0.0);
         let mut farthest_origin = zero;
         for axis in 0..3 {
             for offset in (0..n).step_by(LANES) {
@@ -249,8 +249,9 @@ impl<I: Isa> Packet<I> {
                 asked &= asked - 1;
                 let (rays, entered) = self.groups[group % GROUPS].touches(node, child);
                 let n = rays.count_ones() as usize;
-                let is_alone = n <= self.n_alone && self.stragglers.add(rays, entered, reference);
-                touching |= u32::from(n > 0 && !is_alone) << group;
+                let stays =
+                    n > self.n_alone || (n > 0 && !self.stragglers.add(rays, entered, reference));
+                touching |= u32::from(stays) << group;
             }
             if touching != 0 {
                 if self.n_alone > 0 {

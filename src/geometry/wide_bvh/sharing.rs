@@ -48,7 +48,7 @@ impl Sharing {
     pub(super) fn next<I: Isa>(&mut self, rays: &RayBatch, first: usize) -> Share {
         let n = (LANES * GROUPS).min(rays.len() - first);
         if first >= self.parted {
-            if go_together::<I>(rays, first, n, 2.0 * self.spread) {
+            if go_together::<I>(rays, first, n, self.spread) {
                 return Share { n, n_alone: 0 };
             }
             self.parted = first + n;
@@ -57,32 +57,30 @@ impl Sharing {
         let n = n.min(LANES);
         if self.are_runs {
             let n = n_alike::<I>(rays, first, n, self.spread);
-            Share { n, n_alone: if n < FEWEST { self.n_alone } else { 0 } }
+            Share { n, n_alone: if n < FEWEST { LANES } else { 0 } }
         } else {
             Share { n, n_alone: self.n_alone }
         }
     }
 }
 
-/// Whether directions are no farther apart than `spread` along each axis, in units of the largest
-/// component of all.
+/// Whether all directions are no farther than `spread` from the first along each axis, in units of
+/// its largest component.
 #[inline(always)]
 fn go_together<I: Isa>(rays: &RayBatch, first: usize, n: usize, spread: f32) -> bool {
-    let mut largest = 0.0_f32;
-    let mut widest = 0.0_f32;
+    let direction = rays.ray(first).direction;
+    let reach = I::F16::splat(spread * direction.abs().max_element());
+    let zero = I::F16::splat(0.0);
+    let mut farthest = zero;
     for axis in 0..3 {
-        let start = lanes::<I::F16>(&rays.direction[axis], first, n);
-        let (mut low, mut high) = (start, start);
-        for offset in (LANES..n).step_by(LANES) {
+        let start = I::F16::splat(direction[axis]);
+        for offset in (0..n).step_by(LANES) {
             let these = lanes::<I::F16>(&rays.direction[axis], first + offset, n - offset);
-            low = low.min(these);
-            high = high.max(these);
+            let apart = these.sub(start);
+            farthest = apart.max(zero.sub(apart)).max(farthest);
         }
-        let (low, high) = (low.least(), high.greatest());
-        largest = largest.max(high).max(-low);
-        widest = widest.max(high - low);
     }
-    widest <= spread * largest
+    farthest.le(reach) == I::F16::ALL
 }
 
 /// How many of the next rays have directions no farther than `spread` from the first along each
