@@ -205,7 +205,8 @@ impl Geometry {
         let mut selector = Selector::new(rays);
         // Of what was found so far; from the first box on.
         let mut limits: Vec<f32> = Vec::new();
-        let mut selected = Vec::new();
+        let (mut selected, mut theirs) = (Vec::new(), Vec::new());
+        let mut gathered = RayBatch::default();
         for id in &self.listed {
             let instance = &self.instances[*id as usize];
             let Some(bounds) = self.box_of(instance) else {
@@ -220,12 +221,12 @@ impl Geometry {
             if selected.is_empty() {
                 continue;
             }
-            let mut theirs: Vec<Nearest> =
-                selected.iter().map(|place| nearest[*place as usize]).collect();
-            let gathered = rays.gathered(&selected);
+            theirs.clear();
+            theirs.extend(selected.iter().map(|place| nearest[*place as usize]));
+            gathered.gather(rays, &selected);
             instance.intersect_batch(&gathered, *id, self.kind, &mut theirs);
-            for (place, theirs) in selected.iter().zip(theirs) {
-                nearest[*place as usize] = theirs;
+            for (place, theirs) in selected.iter().zip(&theirs) {
+                nearest[*place as usize] = *theirs;
                 limits[*place as usize] = theirs.t();
             }
         }
@@ -294,7 +295,8 @@ impl Geometry {
         let mut selector = Selector::new(rays);
         // Below 0 where a ray is blocked; from the first box on.
         let mut limits: Vec<f32> = Vec::new();
-        let mut selected = Vec::new();
+        let (mut selected, mut theirs) = (Vec::new(), Vec::new());
+        let mut gathered = RayBatch::default();
         for id in self.listed.iter().filter(|id| take(**id)) {
             let instance = &self.instances[*id as usize];
             let Some(bounds) = self.box_of(instance) else {
@@ -311,10 +313,12 @@ impl Geometry {
             if selected.is_empty() {
                 continue;
             }
-            let mut theirs = vec![false; selected.len()];
-            instance.occluded_batch(&rays.gathered(&selected), *id, self.kind, &mut theirs);
-            for (place, is_blocked) in selected.iter().zip(theirs) {
-                if is_blocked {
+            theirs.clear();
+            theirs.resize(selected.len(), false);
+            gathered.gather(rays, &selected);
+            instance.occluded_batch(&gathered, *id, self.kind, &mut theirs);
+            for (place, is_blocked) in selected.iter().zip(&theirs) {
+                if *is_blocked {
                     blocked[*place as usize] = true;
                     limits[*place as usize] = -1.0;
                 }

@@ -101,7 +101,7 @@ impl Descent {
     /// What the tests of a ray need.
     #[inline(always)]
     fn aim(&mut self, bvh: &WideBvh, ray: &Ray, limit: f32) {
-        let pad = WideBvh::pad(ray.origin.abs().max_element(), bvh.magnitude);
+        let pad = (ray.origin.abs().max_element() + bvh.magnitude) * WideBvh::ROUNDING;
         for axis in 0..3 {
             let reciprocal = 1.0 / WideBvh::not_tiny(ray.direction[axis]);
             let is_negative = reciprocal < 0.0;

@@ -126,12 +126,9 @@ impl WideBvh {
         if d.abs() < Self::SMALLEST { Self::SMALLEST.copysign(d) } else { d }
     }
 
-    /// Boxes are grown by this, 16 units in the last place of the largest coordinate that matters,
-    /// which covers the rounding of box and triangle tests alike.
-    #[inline(always)]
-    fn pad(origin: f32, magnitude: f32) -> f32 {
-        (origin + magnitude) * (16.0 / 16_777_216.0)
-    }
+    /// Boxes are grown by this share of the largest coordinates of the ray's origin and of the tree
+    /// together: 16 units in the last place, which covers the rounding of box and triangle tests.
+    const ROUNDING: f32 = 16.0 / 16_777_216.0;
 
     /// Builds the tree of a mesh that has triangles, on the current pool.
     pub(super) fn build(mesh: &Mesh, stop: &AtomicBool) -> Result<Self, Stopped> {

@@ -12,7 +12,7 @@
 
 use crate::geometry::lanes::{Isa, Lanes};
 use crate::geometry::wide_bvh::descent::{STARTS, Start};
-use crate::geometry::wide_bvh::group::{Group, LANES, lanes};
+use crate::geometry::wide_bvh::group::{Group, LANES};
 use crate::geometry::wide_bvh::sharing::{Share, Sharing};
 use crate::geometry::wide_bvh::stream::{self, Fleet, Take, TakeAny, TakeNearest};
 use crate::geometry::wide_bvh::{Block, LEAF, Node, WIDTH, WideBvh};
@@ -119,46 +119,29 @@ impl<I: Isa> Packet<I> {
         self.n_groups = n.div_ceil(LANES);
         self.first = first;
         self.farthest = -1.0;
-        let zero = I::F16::splat(0.0);
-        let mut farthest_origin = zero;
-        for axis in 0..3 {
-            for offset in (0..n).step_by(LANES) {
-                let origin = lanes::<I::F16>(&rays.origin[axis], first + offset, n - offset);
-                farthest_origin = origin.max(farthest_origin);
-                farthest_origin = zero.sub(origin).max(farthest_origin);
-            }
-        }
-        let pad = WideBvh::pad(farthest_origin.greatest(), bvh.magnitude);
-        for axis in 0..3 {
-            for index in 0..self.n_groups {
-                let offset = index * LANES;
-                let origin = lanes::<I::F16>(&rays.origin[axis], first + offset, n - offset);
-                let direction = lanes::<I::F16>(&rays.direction[axis], first + offset, n - offset);
-                self.groups[index].set_axis(axis, origin, direction, pad);
-            }
-            self.intervals[axis] = self.interval(axis, pad);
-        }
-        for index in 0..self.n_groups {
+        for (index, group) in self.groups[..self.n_groups].iter_mut().enumerate() {
             let offset = index * LANES;
             let mut limits = [-1.0; LANES];
             for (lane, limit) in limits.iter_mut().enumerate().take(n - offset) {
                 *limit = hits.limit(first + offset + lane);
             }
-            let group = &mut self.groups[index];
-            group.limit = I::F16::load(&limits);
-            group.farthest = group.limit.greatest();
+            group.start(bvh, rays, first + offset, n - offset, &limits);
             self.farthest = self.farthest.max(group.farthest);
-            group.set_axes(rays, first + offset, n - offset);
+        }
+        for axis in 0..3 {
+            self.intervals[axis] = self.interval(axis);
         }
     }
 
     /// What the box tests along an axis have in common, if the directions have their sign.
     #[inline(always)]
-    fn interval(&self, axis: usize, pad: f32) -> Option<Interval> {
+    fn interval(&self, axis: usize) -> Option<Interval> {
         let [first, others @ ..] = &self.groups[..self.n_groups] else { return None };
         let is_negative = first.negative[axis] != 0;
         let (mut least, mut greatest) = (first.reciprocal[axis], first.reciprocal[axis]);
-        let (mut low, mut high) = (first.origin[axis], first.origin[axis]);
+        let low_of = |group: &Group<I>| group.origin[axis].sub(group.pad);
+        let high_of = |group: &Group<I>| group.origin[axis].add(group.pad);
+        let (mut low, mut high) = (low_of(first), high_of(first));
         let mut are_negative = first.negative[axis];
         for group in others {
             if (group.negative[axis] != 0) != is_negative {
@@ -167,14 +150,14 @@ impl<I: Isa> Packet<I> {
             are_negative &= group.negative[axis];
             least = least.min(group.reciprocal[axis]);
             greatest = greatest.max(group.reciprocal[axis]);
-            low = low.min(group.origin[axis]);
-            high = high.max(group.origin[axis]);
+            low = low.min(low_of(group));
+            high = high.max(high_of(group));
         }
         if is_negative && are_negative != I::F16::ALL {
             return None;
         }
         let reciprocals = [least.least(), greatest.greatest()];
-        let (low, high) = (low.least() - pad, high.greatest() + pad);
+        let (low, high) = (low.least(), high.greatest());
         let (near, far) = if is_negative { (axis + 3, axis) } else { (axis, axis + 3) };
         // The near plane is met first from the origin farthest along the direction.
         let (foremost, hindmost) = if is_negative { (low, high) } else { (high, low) };
