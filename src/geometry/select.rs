@@ -221,6 +221,8 @@ mod tests {
             let t_max = if i % 3 == 0 { 2.0 / scale } else { f32::INFINITY };
             rays.push(Ray { t_max, ..Ray::new(origin, direction * scale) });
         }
+        // From so far away boxes are large; for other rays they are not.
+        rays.push(Ray::new(Vec3::splat(1e9), Vec3::NEG_ONE));
         rays
     }
 
@@ -241,11 +243,12 @@ mod tests {
                 }
                 enter <= leave
             };
-            let expected: Vec<u32> = (0..rays.len() as u32).filter(touches).collect();
+            let expected: Vec<u32> = (0..500).filter(touches).collect();
             assert!(expected.len() > 50 && expected.len() < 400, "{}", expected.len());
             for (level, selected) in at_every_level(|| {
                 let mut selected = Vec::new();
                 Selector::new(&rays).select(&bounds, &rays.t_max, &mut selected);
+                assert_eq!(selected.pop(), Some(500), "the ray from far away");
                 selected
             }) {
                 let extra = selected.iter().filter(|i| !expected.contains(i)).count();
