@@ -402,7 +402,7 @@ mod tests {
             let mut hits = Vec::new();
             geometry.intersect(&rays, &mut hits);
             let met: Vec<(usize, Hit)> =
-                hits.iter().enumerate().filter_map(|(i, hit)| Some((i, (*hit)?))).collect();
+                hits.iter().enumerate().filter_map(|(i, near)| Some((i, near.hit()?))).collect();
             assert!(met.len() > BLOCK, "{name} is met {} times", met.len());
             for part in met.chunks_exact(BLOCK) {
                 let mut block = HitBlock::EMPTY;

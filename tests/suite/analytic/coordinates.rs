@@ -17,7 +17,7 @@ fn surface(geometry: &Geometry, origin: DVec3, direction: DVec3) -> Option<Surfa
     rays.push(ray);
     let mut hits = Vec::new();
     geometry.intersect(&rays, &mut hits);
-    hits[0].map(|hit| geometry.surface(&ray, hit))
+    hits[0].hit().map(|hit| geometry.surface(&ray, hit))
 }
 
 fn alone(shape: Shape) -> Geometry {
