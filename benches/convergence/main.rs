@@ -87,7 +87,7 @@ fn main() -> Result<(), Failure> {
         let loaded = load(&Source::Gallery(entry.name), &[], &AtomicBool::new(false))?;
         match options.seeds {
             Some(n) => {
-                judged.extend(pool.install(|| figure::judge(entry.name, &loaded, &options, n))?)
+                judged.extend(pool.install(|| figure::judge(entry.name, &loaded, &options, n))?);
             }
             None => all.push(pool.install(|| measure(entry.name, &loaded, &options))?),
         }
