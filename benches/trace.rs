@@ -24,7 +24,7 @@ use std::time::Instant;
 
 use glam::{DVec3, Vec3};
 use penumbra::geometry::mesh::Mesh;
-use penumbra::geometry::{AcceleratorKind, Geometry, Hit, Instance, Shape, TracedMesh};
+use penumbra::geometry::{AcceleratorKind, Geometry, Instance, Nearest, Shape, TracedMesh};
 use penumbra::io::obj;
 use penumbra::math::{Aabb, PrimitiveId, Ray, RayBatch, Transform};
 use penumbra::scene::description::NormalsKind;
@@ -197,8 +197,9 @@ impl RaySet {
                         n_hits += blocked.iter().filter(|b| **b).count();
                     } else {
                         geometry.intersect(batch, &mut hits);
-                        n_hits += hits.iter().flatten().count();
-                        checksum += hits.iter().flatten().map(|h| f64::from(h.t)).sum::<f64>();
+                        let met = || hits.iter().filter_map(Nearest::hit);
+                        n_hits += met().count();
+                        checksum += met().map(|hit| f64::from(hit.t)).sum::<f64>();
                     }
                 }
                 (n_hits, checksum)
@@ -266,11 +267,11 @@ fn ray_sets(mesh: &Arc<TracedMesh>, bounds: &Aabb) -> Result<Vec<RaySet>, std::i
         .collect();
     let mut batch = RayBatch::default();
     primary.iter().for_each(|ray| batch.push(*ray));
-    let mut hits: Vec<Option<Hit>> = Vec::new();
+    let mut hits = Vec::new();
     geometry.intersect(&batch, &mut hits);
     let (mut shadow, mut shadow_block, mut bounce) = (Vec::new(), Vec::new(), Vec::new());
     for ((x, y), (ray, hit)) in pixels().zip(primary.iter().zip(&hits)) {
-        let Some(hit) = hit else { continue };
+        let Some(hit) = hit.hit() else { continue };
         let i = y * WIDTH + x;
         let [a, b, c] = mesh.mesh.corners(hit.id.primitive).map(Vec3::as_dvec3);
         let direction = ray.direction.as_dvec3();

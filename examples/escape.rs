@@ -66,7 +66,7 @@ fn main() -> ExitCode {
             let mut hits = Vec::new();
             geometry.intersect(&rays, &mut hits);
             n_traced += hits.len() as u64;
-            for (index, _) in hits.iter().enumerate().filter(|(_, hit)| hit.is_none()) {
+            for (index, _) in hits.iter().enumerate().filter(|(_, hit)| !hit.is_hit()) {
                 n_escaped += 1;
                 if n_escaped <= 5 {
                     println!("escaped: {}, {:?}", kind.name(), rays.ray(index));

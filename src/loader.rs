@@ -76,6 +76,12 @@ pub enum LoadError {
     /// A file cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
+    /// Nothing that can be opened.
+    #[error("{name}: is no scene, mesh or snapshot; give a file that ends in .toml, .obj or .png")]
+    Unknown {
+        /// The file.
+        name: String,
+    },
     /// The scene is wrong, or names a file that is.
     #[error("{}", .error.in_file(.name))]
     Scene {
@@ -237,6 +243,9 @@ impl Opened {
         }
         if has_ending("obj") {
             return Self::mesh(name, path, &bytes, stop, told);
+        }
+        if !is_scene && str::from_utf8(&bytes).is_err() {
+            return Err(LoadError::Unknown { name });
         }
         let text = scene_file::text_of(bytes)
             .map_err(|error| LoadError::Scene { name: name.clone(), error })?;

@@ -146,6 +146,8 @@ struct Orders {
     goal: Goal,
     wanted: Wanted,
     is_paused: bool,
+    /// Whether what the driver has is to be forgotten.
+    is_cleared: bool,
     is_closing: bool,
 }
 
@@ -176,6 +178,7 @@ impl Session {
                 goal,
                 wanted: Wanted::default(),
                 is_paused: false,
+                is_cleared: false,
                 is_closing: false,
             }),
             changed: Condvar::new(),
@@ -252,6 +255,14 @@ impl Session {
         self.shared.stop_preview.store(true, Ordering::Relaxed);
         self.shared.stop_refining.store(true, Ordering::Relaxed);
         drop(orders);
+    }
+
+    /// Gives up everything and forgets every picture: once what is under way has stopped, nothing
+    /// of the scene is in memory any more.
+    pub fn clear(&self) {
+        self.abandon();
+        self.shared.orders().is_cleared = true;
+        self.shared.changed.notify_one();
     }
 
     /// While paused, a new job gets its preview and its first full sample, and no more.

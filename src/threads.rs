@@ -23,7 +23,19 @@ pub fn pool(name: &'static str, n_threads: usize) -> io::Result<rayon::ThreadPoo
     started(n_threads, builder(name, n_threads))
 }
 
-/// The same, at lower priority where the system has one, so that the desktop stays usable.
+/// The same with as many threads as somebody asked for. Where nobody did: one a processor, or fewer
+/// where the system has not so many left.
+///
+/// # Errors
+/// When the system has no thread left, or fewer than were asked for.
+pub fn pool_of(name: &'static str, n_wanted: Option<u32>) -> io::Result<rayon::ThreadPool> {
+    match n_wanted {
+        Some(n) => pool(name, n as usize),
+        None => or_fewer(available(), |n| pool(name, n)),
+    }
+}
+
+/// [`pool`] at lower priority where the system has one, so that the desktop stays usable.
 ///
 /// # Errors
 /// When the system has no thread left.
@@ -39,10 +51,21 @@ fn builder(name: &'static str, n_threads: usize) -> rayon::ThreadPoolBuilder {
 
 fn started(n_threads: usize, builder: rayon::ThreadPoolBuilder) -> io::Result<rayon::ThreadPool> {
     builder.build().map_err(|error| {
-        io::Error::other(format!(
-            "cannot start {n_threads} threads: {error}; give a smaller number"
-        ))
+        io::Error::other(match n_threads {
+            1 => format!("cannot start a thread: {error}; end other programs first"),
+            n => format!("cannot start {n} threads: {error}; give a smaller number"),
+        })
     })
+}
+
+/// What `start` makes of a number, or of half of it, and so on; of 1 it has to.
+fn or_fewer<T>(mut n: usize, start: impl Fn(usize) -> io::Result<T>) -> io::Result<T> {
+    loop {
+        match start(n) {
+            Err(_) if 1 < n => n /= 2,
+            result => return result,
+        }
+    }
 }
 
 fn lower_priority() {
@@ -64,4 +87,19 @@ pub fn panic_text(panic: &(dyn Any + Send)) -> String {
 /// Processors that this process may use, at least 1.
 pub fn available() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn where_threads_are_scarce_fewer_do() {
+        let scarce = |most| {
+            move |n| if n <= most { Ok(n) } else { Err(io::Error::other(format!("{n} are many"))) }
+        };
+        assert_eq!(or_fewer(12, scarce(100)).unwrap(), 12, "there are enough");
+        assert_eq!(or_fewer(12, scarce(4)).unwrap(), 3, "there are four");
+        assert_eq!(or_fewer(12, scarce(0)).unwrap_err().to_string(), "1 are many", "there is none");
+    }
 }

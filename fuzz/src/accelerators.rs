@@ -43,7 +43,8 @@ pub fn accelerators(data: &[u8]) {
         let (mut hits, mut blocked) = (Vec::new(), Vec::new());
         geometry.intersect(&rays, &mut hits);
         geometry.occluded(&rays, &mut blocked);
-        let hits: Vec<_> = hits.iter().map(|hit| hit.map(|h| (h.t.to_bits(), h.id))).collect();
+        let hits: Vec<_> =
+            hits.iter().map(|hit| hit.hit().map(|h| (h.t.to_bits(), h.id))).collect();
         (hits, blocked)
     });
     let [.., (hits, blocked)] = &answers;

@@ -15,7 +15,7 @@ pub(super) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
     warn(&loaded.report, false);
     // No picture is made, and none has to fit into memory.
     (loaded.description.render.width, loaded.description.render.height) = (1, 1);
-    let pool = threads::pool("build", threads::available())?;
+    let pool = threads::pool_of("build", None)?;
     let world = world_of(&loaded, AcceleratorKind::default(), &pool)?;
     let counts = Counts::of(&loaded);
     let tree = world.geometry.statistics();

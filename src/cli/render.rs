@@ -5,10 +5,12 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
+use anyhow::anyhow;
+
 use crate::cli::progress::Progress;
 use crate::cli::{Failure, RenderArguments, print_json, warn};
 use crate::geometry::AcceleratorKind;
-use crate::io::output::{OutputFormat, check_writable, replace_file};
+use crate::io::output::{OutputFormat, check_writable, keep_elsewhere, replace_file};
 use crate::io::scene_file::Override;
 use crate::io::snapshot;
 use crate::io::{crash, printable_path};
@@ -35,8 +37,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     crash::rehearse();
     let samples = loaded.description.render.samples;
     let start = Instant::now();
-    let n_threads = arguments.threads.map_or_else(threads::available, |n| n as usize);
-    let pool = threads::pool("render", n_threads)?;
+    let pool = threads::pool_of("render", arguments.threads)?;
     let world = world_of(&loaded, arguments.accelerator, &pool)?;
     let goal = Goal { samples, seconds: arguments.time, noise_percent: arguments.noise };
     let mut progress = Progress::new(goal, arguments.quiet);
@@ -50,7 +51,13 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     let texts = snapshot::texts(&loaded.description, size, film.n_samples(), &loaded.files, None)?;
     let tone_mapping = &loaded.description.tone_mapping;
     let bytes = encode(output, format, &film.picture(), tone_mapping, &texts)?;
-    replace_file(output, &bytes)?;
+    if let Err(error) = replace_file(output, &bytes) {
+        // Hours may have been spent on it, and the disk have filled up meanwhile.
+        return Err(match keep_elsewhere(output, &bytes) {
+            Some(place) => anyhow!("{error}; the picture is in {}", printable_path(&place)).into(),
+            None => error.into(),
+        });
+    }
     if arguments.json {
         let summary = serde_json::json!({
             "output": output.to_string_lossy(),

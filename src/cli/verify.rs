@@ -48,8 +48,7 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
         }
         Err(error) => return Err(anyhow!("{}: {error}", printable_path(path)).into()),
     };
-    let n_threads = arguments.threads.map_or_else(threads::available, |n| n as usize);
-    let pool = threads::pool("render", n_threads)?;
+    let pool = threads::pool_of("render", arguments.threads)?;
     let world = world_of(&loaded, AcceleratorKind::default(), &pool)?;
     let goal = Goal { samples: record.samples, seconds: None, noise_percent: None };
     let mut progress = Progress::new(goal, arguments.quiet);

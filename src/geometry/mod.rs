@@ -25,14 +25,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::color::Rgb;
 use crate::geometry::kd_tree::{Item, KdTree, Split, Walk};
-use crate::geometry::nearest::{Nearest, Search};
+use crate::geometry::nearest::Search;
 use crate::geometry::select::Selector;
 use crate::math::{Aabb, PrimitiveId, Ray, RayBatch};
 
 pub use cost::TraversalCost;
 pub use instance::Instance;
 pub use mesh_tree::{MeshTree, TracedMesh};
-pub use nearest::Hit;
+pub use nearest::{Hit, Nearest};
 pub use shape::Shape;
 pub use surface::Surface;
 pub(crate) use surface::{HitBlock, SurfaceBlock};
@@ -198,17 +198,19 @@ impl Geometry {
         statistics
     }
 
-    /// What each ray meets first; `hits` is overwritten, one entry a ray.
-    pub fn intersect(&self, rays: &RayBatch, hits: &mut Vec<Option<Hit>>) {
-        let mut nearest: Vec<Nearest> = rays.t_max.iter().map(|t| Nearest::new(*t)).collect();
+    /// What each ray meets first; `nearest` is overwritten, one entry a ray.
+    pub fn intersect(&self, rays: &RayBatch, nearest: &mut Vec<Nearest>) {
+        nearest.clear();
+        nearest.extend(rays.t_max.iter().map(|t| Nearest::new(*t)));
         let mut selector = Selector::new(rays);
         // Of what was found so far; from the first box on.
         let mut limits: Vec<f32> = Vec::new();
-        let mut selected = Vec::new();
+        let (mut selected, mut theirs) = (Vec::new(), Vec::new());
+        let mut gathered = RayBatch::default();
         for id in &self.listed {
             let instance = &self.instances[*id as usize];
             let Some(bounds) = self.box_of(instance) else {
-                instance.intersect_batch(rays, *id, self.kind, &mut nearest);
+                instance.intersect_batch(rays, *id, self.kind, nearest);
                 limits.clear();
                 continue;
             };
@@ -219,12 +221,12 @@ impl Geometry {
             if selected.is_empty() {
                 continue;
             }
-            let mut theirs: Vec<Nearest> =
-                selected.iter().map(|place| nearest[*place as usize]).collect();
-            let gathered = rays.gathered(&selected);
+            theirs.clear();
+            theirs.extend(selected.iter().map(|place| nearest[*place as usize]));
+            gathered.gather(rays, &selected);
             instance.intersect_batch(&gathered, *id, self.kind, &mut theirs);
-            for (place, theirs) in selected.iter().zip(theirs) {
-                nearest[*place as usize] = theirs;
+            for (place, theirs) in selected.iter().zip(&theirs) {
+                nearest[*place as usize] = *theirs;
                 limits[*place as usize] = theirs.t();
             }
         }
@@ -236,8 +238,6 @@ impl Geometry {
                 *nearest = search.nearest;
             }
         }
-        hits.clear();
-        hits.extend(nearest.iter().map(Nearest::hit));
     }
 
     /// Whether anything lies between the ends of each ray; `blocked` is overwritten.
@@ -295,7 +295,8 @@ impl Geometry {
         let mut selector = Selector::new(rays);
         // Below 0 where a ray is blocked; from the first box on.
         let mut limits: Vec<f32> = Vec::new();
-        let mut selected = Vec::new();
+        let (mut selected, mut theirs) = (Vec::new(), Vec::new());
+        let mut gathered = RayBatch::default();
         for id in self.listed.iter().filter(|id| take(**id)) {
             let instance = &self.instances[*id as usize];
             let Some(bounds) = self.box_of(instance) else {
@@ -312,10 +313,12 @@ impl Geometry {
             if selected.is_empty() {
                 continue;
             }
-            let mut theirs = vec![false; selected.len()];
-            instance.occluded_batch(&rays.gathered(&selected), *id, self.kind, &mut theirs);
-            for (place, is_blocked) in selected.iter().zip(theirs) {
-                if is_blocked {
+            theirs.clear();
+            theirs.resize(selected.len(), false);
+            gathered.gather(rays, &selected);
+            instance.occluded_batch(&gathered, *id, self.kind, &mut theirs);
+            for (place, is_blocked) in selected.iter().zip(&theirs) {
+                if *is_blocked {
                     blocked[*place as usize] = true;
                     limits[*place as usize] = -1.0;
                 }

@@ -13,7 +13,7 @@ pub struct Hit {
 
 /// The best hit found so far: the smallest distance, of equal ones the lowest primitive.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Nearest {
+pub struct Nearest {
     best: Hit,
 }
 
@@ -25,7 +25,7 @@ impl Nearest {
     }
 
     /// Considers a hit at any `t`, NaN included, of a ray that leaves `source`.
-    #[inline]
+    #[inline(always)]
     pub(super) fn offer(&mut self, t: f32, id: PrimitiveId, source: PrimitiveId) {
         if !(t > 0.0 && t <= self.best.t) {
             return;
@@ -37,20 +37,20 @@ impl Nearest {
     }
 
     /// Farther hits are of no interest; equal ones may be, of a lower primitive.
-    #[inline]
+    #[inline(always)]
     pub(super) fn t(&self) -> f32 {
         self.best.t
     }
 
     /// Whether anything was found.
-    #[inline]
-    pub(super) fn is_hit(&self) -> bool {
+    #[inline(always)]
+    pub fn is_hit(&self) -> bool {
         self.best.id != PrimitiveId::NONE
     }
 
     /// The best hit.
-    #[inline]
-    pub(super) fn hit(&self) -> Option<Hit> {
+    #[inline(always)]
+    pub fn hit(&self) -> Option<Hit> {
         self.is_hit().then_some(self.best)
     }
 }

@@ -19,8 +19,6 @@ pub(super) struct Selector<'a> {
 struct Slopes {
     /// Of the directions.
     reciprocals: [Vec<f32>; 3],
-    /// The largest coordinate of an origin.
-    magnitude: f32,
     /// The least and the greatest origin and reciprocal of each block of rays.
     least: [Vec<f32>; 6],
     greatest: [Vec<f32>; 6],
@@ -32,46 +30,50 @@ impl<'a> Selector<'a> {
     }
 
     /// Overwrites `selected` with the rays that may touch the box before their limits, one a ray;
-    /// those whose limit is below 0 do not. The box is grown by the bound of the rounding errors.
+    /// those whose limit is below 0 do not. For each ray the box is grown by the bound of the
+    /// rounding errors.
     pub(super) fn select(&mut self, bounds: &Aabb, limits: &[f32], selected: &mut Vec<u32>) {
         let slopes = self.slopes.get_or_init(|| Slopes::new(self.rays));
-        let pad = (slopes.magnitude + bounds.max_abs()) * (16.0 / 16_777_216.0);
-        let bounds = Aabb { min: bounds.min - pad, max: bounds.max + pad };
         let mut is_near = vec![0; limits.len().div_ceil(BLOCK)];
-        near_beams(&bounds, &slopes.least, &slopes.greatest, &mut is_near);
+        near_beams(bounds, &slopes.least, &slopes.greatest, &mut is_near);
         selected.clear();
         let near = is_near.iter().enumerate().filter(|(_, is_near)| **is_near != 0);
         for start in near.map(|(block, _)| block * BLOCK) {
-            let n = BLOCK.min(limits.len() - start);
             let mut touches = [0; BLOCK];
-            let columns = Columns::of(self.rays, &slopes.reciprocals, limits, start, n);
-            touching(&bounds, &columns, &mut touches);
-            selected.extend((0..n).filter(|i| touches[*i] != 0).map(|i| (start + i) as u32));
+            let [ox, oy, oz] = &self.rays.origin;
+            let [rx, ry, rz] = &slopes.reciprocals;
+            let columns = [ox, oy, oz, rx, ry, rz].map(|column| &column[start..]);
+            let limits = &limits[start..];
+            match whole_lanes(columns, limits) {
+                Some((columns, limits)) => touching(bounds, columns, limits, &mut touches),
+                None => {
+                    // Rays that are not there end before they start.
+                    let (mut last, mut ends) = ([[0.0; BLOCK]; 6], [-1.0; BLOCK]);
+                    let n = limits.len();
+                    for (lane, column) in last.iter_mut().zip(columns) {
+                        lane[..n].copy_from_slice(&column[..n]);
+                    }
+                    ends[..n].copy_from_slice(limits);
+                    touching(bounds, last.each_ref(), &ends, &mut touches);
+                }
+            }
+            let (mut found, mut n_found) = ([0; BLOCK], 0);
+            for (i, is_touched) in touches.into_iter().enumerate() {
+                found[n_found] = (start + i) as u32;
+                n_found += is_touched as usize;
+            }
+            selected.extend_from_slice(&found[..n_found]);
         }
     }
 }
 
-/// A block of rays as the test of boxes sees it: origins, reciprocals, limit.
-struct Columns([Lane<f32>; 7]);
-
-impl Columns {
-    fn of(
-        rays: &RayBatch,
-        reciprocals: &[Vec<f32>; 3],
-        limits: &[f32],
-        start: usize,
-        n: usize,
-    ) -> Self {
-        let [ox, oy, oz] = &rays.origin;
-        let [rx, ry, rz] = reciprocals;
-        // Rays that are not there end before they start.
-        let mut lanes = [[-1.0; BLOCK]; 7];
-        for (lane, column) in lanes.iter_mut().zip([ox, oy, oz, rx, ry, rz]) {
-            lane[..n].copy_from_slice(&column[start..start + n]);
-        }
-        lanes[6][..n].copy_from_slice(&limits[start..start + n]);
-        Self(lanes)
-    }
+/// The first lanes of columns that have them.
+fn whole_lanes<'a>(
+    columns: [&'a [f32]; 6],
+    limits: &'a [f32],
+) -> Option<([&'a Lane<f32>; 6], &'a Lane<f32>)> {
+    let [ox, oy, oz, rx, ry, rz] = columns.map(<[f32]>::first_chunk);
+    Some(([ox?, oy?, oz?, rx?, ry?, rz?], limits.first_chunk()?))
 }
 
 impl Slopes {
@@ -83,7 +85,6 @@ impl Slopes {
         };
         let reciprocals: [Vec<f32>; 3] =
             rays.direction.each_ref().map(|column| column.iter().map(reciprocal).collect());
-        let magnitude = rays.origin.iter().flatten().fold(0.0_f32, |most, x| most.max(x.abs()));
         let columns = || rays.origin.iter().chain(&reciprocals);
         let mut least: [Vec<f32>; 6] = Default::default();
         let mut greatest: [Vec<f32>; 6] = Default::default();
@@ -98,7 +99,7 @@ impl Slopes {
                 greatest.push(high);
             }
         }
-        Self { reciprocals, magnitude, least, greatest }
+        Self { reciprocals, least, greatest }
     }
 }
 
@@ -127,8 +128,12 @@ vectorized! {
         let n = is_near.len();
         let [ox0, oy0, oz0, rx0, ry0, rz0] = least.each_ref().map(|column| &column[..n]);
         let [ox1, oy1, oz1, rx1, ry1, rz1] = greatest.each_ref().map(|column| &column[..n]);
-        let (low, high) = (bounds.min, bounds.max);
+        let magnitude = bounds.max_abs();
         for i in 0..n {
+            let farthest = greater(greater(ox0[i].abs(), oy0[i].abs()), oz0[i].abs());
+            let farthest = greater(greater(ox1[i].abs(), oy1[i].abs()), farthest);
+            let pad = (greater(oz1[i].abs(), farthest) + magnitude) * ROUNDING;
+            let (low, high) = (bounds.min - pad, bounds.max + pad);
             let (near_x, far_x) = beam(low.x, high.x, (ox0[i], ox1[i]), (rx0[i], rx1[i]));
             let (near_y, far_y) = beam(low.y, high.y, (oy0[i], oy1[i]), (ry0[i], ry1[i]));
             let (near_z, far_z) = beam(low.z, high.z, (oz0[i], oz1[i]), (rz0[i], rz1[i]));
@@ -137,11 +142,19 @@ vectorized! {
             is_near[i] = u32::from(enter <= leave);
         }
     }
-    /// Which rays of a block touch a box before their limits.
-    fn touching(bounds: &Aabb, columns: &Columns, touches: &mut Lane<u32>) {
-        let (low, high) = (bounds.min, bounds.max);
-        let Columns([ox, oy, oz, rx, ry, rz, limits]) = columns;
+    /// Which rays touch a box before their limits. Columns: origins, reciprocals.
+    fn touching(
+        bounds: &Aabb,
+        columns: [&Lane<f32>; 6],
+        limits: &Lane<f32>,
+        touches: &mut Lane<u32>,
+    ) {
+        let [ox, oy, oz, rx, ry, rz] = columns;
+        let magnitude = bounds.max_abs();
         for i in 0..BLOCK {
+            let farthest = greater(greater(ox[i].abs(), oy[i].abs()), oz[i].abs());
+            let pad = (farthest + magnitude) * ROUNDING;
+            let (low, high) = (bounds.min - pad, bounds.max + pad);
             let (near_x, far_x) = slab(low.x, high.x, ox[i], rx[i]);
             let (near_y, far_y) = slab(low.y, high.y, oy[i], ry[i]);
             let (near_z, far_z) = slab(low.z, high.z, oz[i], rz[i]);
@@ -151,6 +164,9 @@ vectorized! {
         }
     }
 }
+
+/// Boxes are grown by this share of the largest coordinate of the box and of a ray's origin.
+const ROUNDING: f32 = 16.0 / 16_777_216.0;
 
 /// Where a line with that origin and reciprocal direction enters and leaves.
 #[inline(always)]
@@ -205,6 +221,8 @@ mod tests {
             let t_max = if i % 3 == 0 { 2.0 / scale } else { f32::INFINITY };
             rays.push(Ray { t_max, ..Ray::new(origin, direction * scale) });
         }
+        // From so far away boxes are large; for other rays they are not.
+        rays.push(Ray::new(Vec3::splat(1e9), Vec3::NEG_ONE));
         rays
     }
 
@@ -225,11 +243,12 @@ mod tests {
                 }
                 enter <= leave
             };
-            let expected: Vec<u32> = (0..rays.len() as u32).filter(touches).collect();
+            let expected: Vec<u32> = (0..500).filter(touches).collect();
             assert!(expected.len() > 50 && expected.len() < 400, "{}", expected.len());
             for (level, selected) in at_every_level(|| {
                 let mut selected = Vec::new();
                 Selector::new(&rays).select(&bounds, &rays.t_max, &mut selected);
+                assert_eq!(selected.pop(), Some(500), "the ray from far away");
                 selected
             }) {
                 let extra = selected.iter().filter(|i| !expected.contains(i)).count();

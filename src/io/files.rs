@@ -51,22 +51,20 @@ pub fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     // Of what was opened, which may be something else by now.
     let before = file.metadata().map_err(system)?;
     check_kind(path, &before)?;
-    let too_long = || {
-        let (length, limit) = (before.len() >> 20, limit >> 20);
-        FileError::new(path, format!("is {length} MiB long; at most {limit} MiB are read"))
-    };
     if limit < before.len() {
-        return Err(too_long());
+        let (length, limit) = (before.len() >> 20, limit >> 20);
+        let reason = format!("is {length} MiB long; at most {limit} MiB are read");
+        return Err(FileError::new(path, reason));
     }
     memory::check(before.len()).map_err(|error| FileError::new(path, error.to_string()))?;
     let mut bytes = Vec::new();
     bytes
         .try_reserve_exact(before.len() as usize)
         .map_err(|_| FileError::new(path, "does not fit into memory"))?;
-    // One byte more than allowed tells a file that grows.
-    file.by_ref().take(limit + 1).read_to_end(&mut bytes).map_err(system)?;
-    if limit < bytes.len() as u64 {
-        return Err(too_long());
+    // One byte more tells a file that grows, or is longer than it says, as the system's own may be.
+    file.by_ref().take(before.len() + 1).read_to_end(&mut bytes).map_err(system)?;
+    if before.len() < bytes.len() as u64 {
+        return Err(changed_meanwhile(path));
     }
     check_unchanged(path, &before, &file.metadata().map_err(system)?)?;
     Ok(bytes)
@@ -74,10 +72,11 @@ pub fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
 
 fn check_unchanged(path: &Path, before: &Metadata, after: &Metadata) -> Result<(), FileError> {
     let is_same = before.len() == after.len() && before.modified().ok() == after.modified().ok();
-    if !is_same {
-        return Err(FileError::new(path, "was changed while it was read; open it again"));
-    }
-    Ok(())
+    if is_same { Ok(()) } else { Err(changed_meanwhile(path)) }
+}
+
+fn changed_meanwhile(path: &Path) -> FileError {
+    FileError::new(path, "was changed while it was read; open it again")
 }
 
 fn check_kind(path: &Path, metadata: &Metadata) -> Result<(), FileError> {
@@ -129,6 +128,11 @@ mod tests {
             // Calls itself a regular file, and would wait for the kernel's next message.
             let log = read_file(Path::new("/proc/kmsg"), 10).unwrap_err().to_string();
             assert!(log.starts_with("/proc/kmsg: "), "{log}");
+            // Say that they are empty; the second has no end.
+            for name in ["/proc/self/status", "/proc/self/pagemap"] {
+                let error = read_file(Path::new(name), 1 << 30).unwrap_err().to_string();
+                assert!(error.starts_with(name), "{error}");
+            }
         }
     }
 

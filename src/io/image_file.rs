@@ -10,7 +10,7 @@ mod png;
 
 use crate::color::linear_from_srgb;
 use crate::io::memory::NoMemory;
-use crate::io::{excerpt, memory};
+use crate::io::{excerpt, memory, printable_ends};
 use crate::scene::image::Image;
 
 /// Pixels that a picture may have along each side.
@@ -122,7 +122,9 @@ fn texels_of<T: Copy>(
 /// A damaged file, with the decoder's words made safe to print.
 fn damaged(format: &'static str, reason: &impl ToString) -> ImageFileError {
     let reason = reason.to_string();
-    ImageFileError::Damaged { format, reason: reason.trim().escape_debug().to_string() }
+    // One of the decoders quotes some of its words.
+    let reason = printable_ends(reason.trim().trim_matches('"'));
+    ImageFileError::Damaged { format, reason }
 }
 
 #[cfg(test)]

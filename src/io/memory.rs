@@ -3,8 +3,11 @@
 //! Systems hand out more than they have and end programs later; so what a file or a setting asks
 //! for is estimated first, and refused with both figures where the machine cannot hold it.
 
+use std::fs;
+use std::path::Path;
+
 /// Less than this is taken without a question.
-const SMALL: u64 = 64 << 20;
+const SMALL: u64 = 4 << 20;
 
 /// Part of the free memory that is left to everything else, as a divisor.
 const LEFT_TO_OTHERS: u64 = 16;
@@ -37,23 +40,57 @@ fn fits(needed: u64, free: u64) -> Result<(), NoMemory> {
     Ok(())
 }
 
-/// Bytes that this process could still take: of the machine, or of the control group that it runs
-/// in, whichever is less. `None` where the system does not say.
+/// Bytes that this process could still take: of the machine, of the control groups that it runs in,
+/// and within the limits set for it, whichever is least. `None` where the system does not say.
 pub fn free() -> Option<u64> {
-    let read = |path: &str| std::fs::read_to_string(path).ok();
-    let machine = read("/proc/meminfo").and_then(|text| available_in(&text));
-    let number = |path: &str| read(path)?.trim().parse::<u64>().ok();
-    let limit = number("/sys/fs/cgroup/memory.max");
-    let used = number("/sys/fs/cgroup/memory.current");
-    let group = limit.zip(used).map(|(limit, used)| limit.saturating_sub(used));
-    machine.into_iter().chain(group).min()
+    free_under(Path::new("/"))
 }
 
-/// The line `MemAvailable:    123 kB` of `/proc/meminfo`.
-fn available_in(text: &str) -> Option<u64> {
-    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    kibibytes.checked_mul(1024)
+/// The same, of the system whose files are there.
+fn free_under(root: &Path) -> Option<u64> {
+    let read = |path: &str| fs::read_to_string(root.join(path)).unwrap_or_default();
+    let kibibytes = |text: &str, key| number_after(text, key)?.checked_mul(1024);
+    let machine = kibibytes(&read("proc/meminfo"), "MemAvailable:");
+    let (limits, status) = (read("proc/self/limits"), read("proc/self/status"));
+    let limited =
+        [("Max address space", "VmSize:"), ("Max data size", "VmData:")].map(|(most, used)| {
+            Some(number_after(&limits, most)?.saturating_sub(kibibytes(&status, used)?))
+        });
+    let groups = read("proc/self/cgroup");
+    let groups = groups.lines().flat_map(|line| free_in_groups(&root.join("sys/fs/cgroup"), line));
+    machine.into_iter().chain(limited.into_iter().flatten()).chain(groups).min()
+}
+
+/// What is left of the control group in a line `NUMBER:KINDS:/PATH` of `/proc/self/cgroup`, and of
+/// those around it. What holds files only is given back when it is needed.
+fn free_in_groups(mounted: &Path, line: &str) -> Vec<u64> {
+    let mut parts = line.splitn(3, ':').skip(1);
+    let (Some(kinds), Some(path)) = (parts.next(), parts.next()) else { return Vec::new() };
+    let (folder, most, used, files) = match kinds {
+        "" => ("", "memory.max", "memory.current", ["inactive_file ", "active_file "]),
+        "memory" => (
+            "memory",
+            "memory.limit_in_bytes",
+            "memory.usage_in_bytes",
+            ["total_inactive_file ", "total_active_file "],
+        ),
+        _ => return Vec::new(),
+    };
+    let free_in = |group: &Path| {
+        let group = mounted.join(folder).join(group);
+        let read = |name| fs::read_to_string(group.join(name)).ok();
+        let number = |name| read(name)?.trim().parse::<u64>().ok();
+        let statistics = read("memory.stat").unwrap_or_default();
+        let files = files.iter().filter_map(|key| number_after(&statistics, key)).sum();
+        Some(number(most)?.saturating_sub(number(used)?.saturating_sub(files)))
+    };
+    Path::new(path.trim_start_matches('/')).ancestors().filter_map(free_in).collect()
+}
+
+/// The number that begins what follows `key` in its line.
+fn number_after(text: &str, key: &str) -> Option<u64> {
+    let rest = text.lines().find_map(|line| line.strip_prefix(key))?;
+    rest.split_whitespace().next()?.parse().ok()
 }
 
 /// A size in words: "812 MiB", "15.1 GiB".
@@ -81,12 +118,72 @@ mod tests {
         }
     }
 
+    /// A system in a folder: 23 GB available, and whatever else these files say.
+    fn system(files: &[(&str, &str)]) -> tempfile::TempDir {
+        let root = tempfile::tempdir().unwrap();
+        let meminfo = "MemTotal:       24000000 kB\nMemAvailable:   23000000 kB\nBuffers: 0 kB\n";
+        for (name, text) in [("proc/meminfo", meminfo)].iter().chain(files) {
+            let path = root.path().join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, text).unwrap();
+        }
+        root
+    }
+
     #[test]
     fn the_system_tells_what_is_available() {
-        let text = "MemTotal:       24000000 kB\nMemAvailable:   23000000 kB\nBuffers: 0 kB\n";
-        assert_eq!(available_in(text), Some(23_000_000 * 1024), "in bytes");
+        let available = Some(23_000_000 * 1024);
+        assert_eq!(free_under(system(&[]).path()), available, "in bytes");
         for text in ["", "MemAvailable: x kB", "MemAvailable: 99999999999999999999 kB"] {
-            assert_eq!(available_in(text), None, "{text:?}");
+            assert_eq!(free_under(system(&[("proc/meminfo", text)]).path()), None, "{text:?}");
         }
+        let unlimited = "Max data size   unlimited  unlimited  bytes\n";
+        let limits = [("proc/self/limits", unlimited), ("proc/self/status", "VmData: 9 kB\n")];
+        assert_eq!(free_under(system(&limits).path()), available, "no limit");
+    }
+
+    #[test]
+    fn limits_of_the_process_count() {
+        let status = "VmPeak:\t  900 kB\nVmSize:\t   500 kB\nVmData:\t   100 kB\n";
+        for (limit, expected) in [
+            (
+                "Max address space         1024000              unlimited            bytes\n",
+                512_000,
+            ),
+            (
+                "Max data size             1024000              unlimited            bytes\n",
+                921_600,
+            ),
+            ("Max address space         1000                 unlimited            bytes\n", 0),
+        ] {
+            let files = [("proc/self/limits", limit), ("proc/self/status", status)];
+            assert_eq!(free_under(system(&files).path()), Some(expected), "{limit}");
+        }
+    }
+
+    /// Files that the system keeps in memory only because there is room count as free.
+    #[test]
+    fn control_groups_count_and_those_around_them() {
+        let statistics = "anon 100\ninactive_file 600\nactive_file 50\n";
+        let inner = [
+            ("proc/self/cgroup", "0::/a/b\n"),
+            ("sys/fs/cgroup/a/b/memory.max", "1000\n"),
+            ("sys/fs/cgroup/a/b/memory.current", "900\n"),
+            ("sys/fs/cgroup/a/b/memory.stat", statistics),
+        ];
+        assert_eq!(free_under(system(&inner).path()), Some(750), "the group of the process");
+        let outer =
+            [("sys/fs/cgroup/a/memory.max", "500\n"), ("sys/fs/cgroup/a/memory.current", "400\n")];
+        let both = [&inner[..], &outer].concat();
+        assert_eq!(free_under(system(&both).path()), Some(100), "the group around it has less");
+        let older = [
+            ("proc/self/cgroup", "9:cpu:/\n4:memory:/not/here\n"),
+            ("sys/fs/cgroup/memory/memory.limit_in_bytes", "1000\n"),
+            ("sys/fs/cgroup/memory/memory.usage_in_bytes", "950\n"),
+            ("sys/fs/cgroup/memory/memory.stat", "total_inactive_file 30\ntotal_active_file 7\n"),
+        ];
+        assert_eq!(free_under(system(&older).path()), Some(87), "groups of the older kind");
+        let unlimited = [inner[0], (inner[1].0, "max\n"), inner[2]];
+        assert_eq!(free_under(system(&unlimited).path()), Some(23_000_000 * 1024), "no limit");
     }
 }

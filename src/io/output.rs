@@ -148,6 +148,15 @@ pub fn create_file(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     Ok(())
 }
 
+/// Keeps what could not be written where it should be: in the system's folder for temporary files,
+/// under a name that nobody has. `None` where that is no place either.
+pub fn keep_elsewhere(path: &Path, bytes: &[u8]) -> Option<PathBuf> {
+    let name = format!("penumbra-{}-{}", std::process::id(), path.file_name()?.to_string_lossy());
+    let place = std::env::temp_dir().join(name);
+    create_file(&place, bytes).ok()?;
+    Some(place)
+}
+
 /// Finds out whether a file could be written there, by making a temporary one beside it.
 ///
 /// # Errors
@@ -184,7 +193,7 @@ fn write_temporary(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile,
     let _ = file.as_file().try_lock();
     let mut writer = BufWriter::new(file);
     let written = writer.write_all(bytes).and_then(|()| writer.flush());
-    written.map_err(|error| WriteError::new(path, error))?;
+    written.map_err(|error| WriteError::new(path, plain(&error)))?;
     let file = writer.into_inner().map_err(|error| WriteError::new(path, error.error().kind()))?;
     file.as_file().sync_all().map_err(|error| WriteError::new(path, error))?;
     Ok(file)

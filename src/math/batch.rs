@@ -108,14 +108,14 @@ impl RayBatch {
         }
     }
 
-    /// The rays at these places, in their order.
-    pub fn gathered(&self, places: &[u32]) -> Self {
-        Self {
-            origin: self.origin.each_ref().map(|column| picked(column, places)),
-            direction: self.direction.each_ref().map(|column| picked(column, places)),
-            t_max: picked(&self.t_max, places),
-            source: picked(&self.source, places),
+    /// Overwrites the batch with the rays of another at these places, in their order.
+    pub fn gather(&mut self, from: &Self, places: &[u32]) {
+        for axis in 0..3 {
+            pick(&from.origin[axis], places, &mut self.origin[axis]);
+            pick(&from.direction[axis], places, &mut self.direction[axis]);
         }
+        pick(&from.t_max, places, &mut self.t_max);
+        pick(&from.source, places, &mut self.source);
     }
 
     /// Number of rays.
@@ -140,8 +140,9 @@ impl RayBatch {
 }
 
 #[inline]
-fn picked<T: Copy>(column: &[T], places: &[u32]) -> Vec<T> {
-    places.iter().map(|place| column[*place as usize]).collect()
+fn pick<T: Copy>(column: &[T], places: &[u32], to: &mut Vec<T>) {
+    to.clear();
+    to.extend(places.iter().map(|place| column[*place as usize]));
 }
 
 /// A block of rays.

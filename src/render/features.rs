@@ -127,7 +127,7 @@ pub fn feature_map(world: &World, stop: &AtomicBool) -> Result<PixelMap<Feature>
     map_tiles(world, stop, Feature::NOTHING, |rays, values| {
         let mut hits = Vec::new();
         world.geometry.intersect(rays, &mut hits);
-        values.extend((0..rays.len()).map(|i| world.feature(&rays.ray(i), hits[i])));
+        values.extend((0..rays.len()).map(|i| world.feature(&rays.ray(i), hits[i].hit())));
     })
 }
 

@@ -19,7 +19,7 @@ use std::ops::Range;
 use glam::{Vec2, Vec3};
 
 use crate::color::Rgb;
-use crate::geometry::{Hit, HitBlock};
+use crate::geometry::{Hit, HitBlock, Nearest};
 use crate::math::sampler::{Net, NumbersBlock, SampleNumbers, Sampler};
 use crate::math::vectorized::{BLOCK, Lane, Lane3, NO_LANES, set_vec3, vec3};
 use crate::math::{PrimitiveId, RayBatch};
@@ -100,7 +100,7 @@ pub(super) struct TileRenderer<'a> {
     radiance: Vec<Rgb>,
     rays: RayBatch,
     paths: Vec<Path>,
-    hits: Vec<Option<Hit>>,
+    hits: Vec<Nearest>,
     next_rays: RayBatch,
     next_paths: Vec<Path>,
     groups: Groups,
@@ -116,7 +116,9 @@ pub(super) struct TileRenderer<'a> {
 struct Block {
     /// How many; the last one is repeated to the end.
     n: usize,
-    paths: Lane<Path>,
+    /// Where they are in the wave.
+    places: Lane<u32>,
+    depth: u32,
     slots: Lane<u32>,
     numbers: NumbersBlock,
     throughput: Lane3,
@@ -231,9 +233,9 @@ impl<'a> TileRenderer<'a> {
                 let n = places.len().min(BLOCK);
                 block.n = n;
                 for i in 0..BLOCK {
-                    let index = self.groups.path(places.start + i.min(n - 1)) as usize;
-                    if let Some(hit) = self.hits[index] {
-                        block.set(i, &self.rays, index, self.paths[index], hit);
+                    let place = self.groups.path(places.start + i.min(n - 1));
+                    if let Some(hit) = self.hits[place as usize].hit() {
+                        block.set(i, &self.rays, place, &self.paths[place as usize], hit);
                     }
                 }
                 places.start += n;
@@ -250,7 +252,7 @@ impl<'a> TileRenderer<'a> {
         let emission = material.emission;
         if emission != Rgb::ZERO {
             for i in 0..n {
-                let path = block.paths[i];
+                let path = self.paths[block.places[i] as usize];
                 let share = path.scattered.map_or(1.0, |last| {
                     let direction = vec3(&block.rays.direction, i).normalize();
                     let from = (last.from, last.normal, last.object, last.total);
@@ -265,17 +267,19 @@ impl<'a> TileRenderer<'a> {
         let ambient = world.job.scene.ambient;
         if settings.integrator == IntegratorKind::Direct && ambient != Rgb::ZERO {
             for i in 0..n {
-                self.add(block.paths[i], vec3(&block.shading.diffuse, i) * ambient);
+                let light = vec3(&block.shading.diffuse, i) * ambient;
+                self.radiance[block.slots[i] as usize] += vec3(&block.throughput, i) * light;
             }
         }
         if !material.is_never_lit() {
             self.light_block(coat, block);
         }
-        let goes_on = block.paths[0].depth < settings.max_depth
+        let goes_on = block.depth < settings.max_depth
             && (settings.integrator == IntegratorKind::Path || material.is_specular());
         if goes_on {
             for i in 0..n {
-                self.go_on(block.paths[i], &block.shading.shading(coat, i));
+                let path = self.paths[block.places[i] as usize];
+                self.go_on(path, &block.shading.shading(coat, i));
             }
         }
     }
@@ -304,16 +308,10 @@ impl<'a> TileRenderer<'a> {
 
 impl Block {
     fn new(sampler: Sampler) -> Self {
-        let nowhere = Path {
-            slot: 0,
-            throughput: Rgb::ZERO,
-            numbers: sampler.numbers(0, 0, 0),
-            depth: 0,
-            scattered: None,
-        };
         Self {
             n: 0,
-            paths: [nowhere; BLOCK],
+            places: [0; BLOCK],
+            depth: 0,
             slots: [0; BLOCK],
             numbers: NumbersBlock::new(sampler),
             throughput: NO_LANES,
@@ -323,13 +321,14 @@ impl Block {
         }
     }
 
-    fn set(&mut self, i: usize, rays: &RayBatch, place: usize, path: Path, hit: Hit) {
-        self.rays.set(i, rays, place, hit);
+    fn set(&mut self, i: usize, rays: &RayBatch, place: u32, path: &Path, hit: Hit) {
+        self.rays.set(i, rays, place as usize, hit);
         self.hits[i] = hit;
         self.slots[i] = path.slot;
         self.numbers.set(i, &path.numbers);
         set_vec3(&mut self.throughput, i, path.throughput);
-        self.paths[i] = path;
+        self.places[i] = place;
+        self.depth = path.depth;
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use crate::geometry::{Geometry, Hit, Shape, Stopped};
+use crate::geometry::{Geometry, Hit, Nearest, Shape, Stopped};
 use crate::math::RayBatch;
 use crate::render::emission::Emission;
 use crate::render::features::Feature;
@@ -99,7 +99,7 @@ impl World {
         rays.push(ray);
         let mut hits = Vec::new();
         self.geometry.intersect(&rays, &mut hits);
-        let feature = self.feature(&ray, hits.first().copied().flatten());
+        let feature = self.feature(&ray, hits.first().and_then(Nearest::hit));
         let point = ray.at(feature.depth).to_array();
         feature.depth.is_finite().then_some(Pick { point, feature })
     }

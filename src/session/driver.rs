@@ -57,6 +57,7 @@ struct Driver<'a, R: Renderer> {
 
 enum Next {
     Close,
+    Forget,
     Begin(u64, RenderJob),
     Survey,
     GoOn,
@@ -80,6 +81,10 @@ pub(super) fn run<R: Renderer>(
     loop {
         match driver.wait(work.as_mut()) {
             Next::Close => return,
+            Next::Forget => {
+                work = None;
+                driver.forget();
+            }
             Next::Begin(generation, job) => {
                 // The old film's memory goes before the new one's is taken.
                 let maps = work.take().filter(|old| same_first_hits(&old.job, &job));
@@ -115,6 +120,9 @@ impl<R: Renderer> Driver<'_, R> {
             if orders.is_closing {
                 return Next::Close;
             }
+            if std::mem::take(&mut orders.is_cleared) {
+                return Next::Forget;
+            }
             if let Some(job) = orders.mailbox.take() {
                 self.shared.stop_refining.store(false, Ordering::Relaxed);
                 self.shared.stop_preview.store(false, Ordering::Relaxed);
@@ -142,6 +150,7 @@ impl<R: Renderer> Driver<'_, R> {
             orders = self.shared.orders();
             let is_still_idle = orders.mailbox.is_none()
                 && !orders.is_closing
+                && !orders.is_cleared
                 && orders.goal == goal
                 && orders.wanted == wanted
                 && work.as_deref().is_none_or(|work| {
@@ -152,6 +161,15 @@ impl<R: Renderer> Driver<'_, R> {
                 orders = self.shared.changed.wait(orders).unwrap_or_else(PoisonError::into_inner);
             }
         }
+    }
+
+    /// Lets go of the world and of the picture.
+    fn forget(&self) {
+        let world = lock(self.world).take();
+        let shown = lock(&self.shared.slot).take();
+        // Freeing takes longer than a pointer swap: not under the locks.
+        drop((world, shown));
+        self.set_phase(Phase::Idle);
     }
 
     /// Tells that nothing is being done, once; the last picture is always shown.

@@ -52,6 +52,11 @@ impl<Order: Send + 'static, Done: Send + 'static> Background<Order, Done> {
         self.shared.changed.notify_one();
     }
 
+    /// Takes back an order that has not been begun; what is being made comes all the same.
+    pub(super) fn forget(&self) {
+        self.shared.lock().order = None;
+    }
+
     /// The newest result, once.
     pub(super) fn take(&self) -> Option<Done> {
         self.shared.lock().done.take()

@@ -71,6 +71,8 @@ pub(super) enum Written {
     Snapshot(PathBuf),
     /// A copy is kept in case of a crash.
     Copy,
+    /// No copy could be kept, for that reason.
+    NoCopy(String),
     /// Nothing was written, for that reason.
     Failed(String),
 }

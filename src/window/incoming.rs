@@ -55,7 +55,12 @@ impl App {
                 Written::Snapshot(path) => {
                     self.toasts.say(format!("snapshot {}", path.display()));
                 }
-                Written::Copy => {}
+                Written::Copy => self.recovery.note_written(),
+                Written::NoCopy(reason) => {
+                    if self.recovery.note_failed() {
+                        self.toasts.fail(reason);
+                    }
+                }
                 Written::Failed(reason) => {
                     self.files.pending = None;
                     self.files.is_saving_first = false;
@@ -191,7 +196,8 @@ impl App {
         self.pinned = None;
         self.awaited_click = None;
         self.snapshot_wanted = false;
-        self.work.session.abandon();
+        self.work.session.clear();
+        self.picture.clear();
         self.work.set_assets(Arc::default());
         self.document = Document::new(empty_scene(), None);
         self.gesture.next();

@@ -104,8 +104,10 @@ impl PictureDisplay {
 
     /// Brings a picture that is ready to the graphics card.
     pub(super) fn update(&mut self, ctx: &egui::Context) {
-        // Without what a view needs, what was shown before stays.
-        let Some(ready) = self.thread.take().flatten() else { return };
+        // Without what a view needs, what was shown before stays; what nobody asks for any more is
+        // not shown at all.
+        let ready = self.thread.take().flatten().filter(|_| self.asked.is_some());
+        let Some(ready) = ready else { return };
         let options = texture_options(ready.is_coarse);
         let image = Arc::clone(&ready.fitted);
         match &mut self.texture {
@@ -117,6 +119,18 @@ impl PictureDisplay {
         self.fitted = Some(ready.fitted);
         self.statistics = ready.statistics;
         self.legend = ready.legend;
+    }
+
+    /// Shows nothing, and keeps nothing of what was shown.
+    pub(super) fn clear(&mut self) {
+        self.thread.forget();
+        self.asked = None;
+        self.texture = None;
+        self.size = [1, 1];
+        self.image = None;
+        self.fitted = None;
+        self.statistics = None;
+        self.legend = None;
     }
 
     /// The picture on show, once there is one.

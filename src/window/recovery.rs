@@ -29,6 +29,8 @@ pub(super) struct Recovery {
     offered: bool,
     /// Whether this window has written one.
     written: bool,
+    /// Whether it was told that the newest could not be written.
+    complained: bool,
     last_time: f64,
     /// What the copy holds.
     copied: Option<SceneDescription>,
@@ -55,6 +57,18 @@ impl Recovery {
     /// The copy is open, and not saved: it goes when that is over.
     pub(super) fn note_restored(&mut self) {
         self.written = true;
+    }
+
+    /// A copy has been written; the scene may have been saved meanwhile, and then it goes again.
+    pub(super) fn note_written(&mut self) {
+        self.written = true;
+        self.complained = false;
+    }
+
+    /// No copy could be written: another is tried when its time comes. Whether to tell that: once.
+    pub(super) fn note_failed(&mut self) -> bool {
+        self.copied = None;
+        !std::mem::replace(&mut self.complained, true)
     }
 
     /// Removes the copy: everything is saved, or let go on purpose.
@@ -123,7 +137,7 @@ impl App {
             match written {
                 Ok(()) => Written::Copy,
                 Err(reason) => {
-                    Written::Failed(format!("cannot keep a copy of your edits: {reason}"))
+                    Written::NoCopy(format!("cannot keep a copy of your edits: {reason}"))
                 }
             }
         });

@@ -11,11 +11,21 @@ use crate::geometry::wide_bvh::{BLOCK, Block, LEAF, Node, WIDTH, WideBvh, leaf};
 use crate::math::Ray;
 
 /// Seven children a level may wait, the builder keeps the tree below 22 levels (12 by cost, then
-/// ten that divide what is left by eight), and a step overwrites eight places.
-const STACK: usize = 168;
+/// ten that divide what is left by eight), a step overwrites eight places, and a ray may begin at
+/// some.
+const STACK: usize = 168 + STARTS;
+/// Places where a ray may begin.
+pub(super) const STARTS: usize = 12;
 
 /// What the stack ends with.
 pub(super) const DONE: u32 = u32::MAX;
+
+/// A place where a ray begins, and the parameter at which it enters it.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Start {
+    pub(super) reference: u32,
+    pub(super) enter: f32,
+}
 
 /// One ray under way.
 pub(super) struct Descent {
@@ -57,7 +67,41 @@ impl Descent {
     /// Puts a ray of object space at the root.
     #[inline(always)]
     pub(super) fn start(&mut self, bvh: &WideBvh, ray: &Ray, limit: f32) {
-        let pad = WideBvh::pad(ray.origin.abs().max_element(), bvh.magnitude);
+        self.aim(bvh, ray, limit);
+        self.current = bvh.root;
+        self.n_waiting = 1;
+    }
+
+    /// Puts a ray of object space where it has come to: at most [`STARTS`] places.
+    #[inline(always)]
+    pub(super) fn go_on<T: Take>(
+        &mut self,
+        bvh: &WideBvh,
+        ray: &Ray,
+        limit: f32,
+        starts: &[Start],
+    ) {
+        self.aim(bvh, ray, limit);
+        self.n_waiting = 1;
+        for start in starts {
+            let key = key_of(start.enter);
+            let mut place = self.n_waiting;
+            while T::SORTED && place > 1 && self.keys[place - 1] > key {
+                self.keys[place] = self.keys[place - 1];
+                self.references[place] = self.references[place - 1];
+                place -= 1;
+            }
+            self.keys[place] = key;
+            self.references[place] = start.reference;
+            self.n_waiting += 1;
+        }
+        self.leave::<T>();
+    }
+
+    /// What the tests of a ray need.
+    #[inline(always)]
+    fn aim(&mut self, bvh: &WideBvh, ray: &Ray, limit: f32) {
+        let pad = (ray.origin.abs().max_element() + bvh.magnitude) * WideBvh::ROUNDING;
         for axis in 0..3 {
             let reciprocal = 1.0 / WideBvh::not_tiny(ray.direction[axis]);
             let is_negative = reciprocal < 0.0;
@@ -73,8 +117,6 @@ impl Descent {
             *to = ray.origin[axis];
         }
         self.limit = limit;
-        self.current = bvh.root;
-        self.n_waiting = 1;
     }
 
     /// Tests the children of the current node and goes to the nearest that is hit, or back to

@@ -11,6 +11,8 @@ pub(super) const LANES: usize = 16;
 /// Sixteen rays. Lanes without a ray, or whose ray is done, end below 0.
 pub(super) struct Group<I: Isa> {
     pub(super) origin: [I::F16; 3],
+    /// By how much boxes are grown.
+    pub(super) pad: I::F16,
     pub(super) reciprocal: [I::F16; 3],
     /// Origins, moved outwards by the bound of rounding errors, times the reciprocals.
     near_origin: [I::F16; 3],
@@ -34,6 +36,7 @@ impl<I: Isa> Group<I> {
         let zero = I::F16::splat(0.0);
         Self {
             origin: [zero; 3],
+            pad: zero,
             reciprocal: [zero; 3],
             near_origin: [zero; 3],
             far_origin: [zero; 3],
@@ -47,18 +50,48 @@ impl<I: Isa> Group<I> {
         }
     }
 
+    /// Takes on the rays `first..first + n` of a batch; of more than sixteen the first. Lanes end at
+    /// their limits.
+    #[inline(always)]
+    pub(super) fn start(
+        &mut self,
+        bvh: &WideBvh,
+        rays: &RayBatch,
+        first: usize,
+        n: usize,
+        limits: &[f32; LANES],
+    ) {
+        let zero = I::F16::splat(0.0);
+        let mut farthest = zero;
+        for axis in 0..3 {
+            let origin = lanes::<I::F16>(&rays.origin[axis], first, n);
+            farthest = origin.max(zero.sub(origin)).max(farthest);
+            self.origin[axis] = origin;
+        }
+        let reach = farthest.add(I::F16::splat(bvh.magnitude));
+        self.pad = reach.mul(I::F16::splat(WideBvh::ROUNDING));
+        let x = lanes::<I::F16>(&rays.direction[0], first, n);
+        let y = lanes::<I::F16>(&rays.direction[1], first, n);
+        let z = lanes::<I::F16>(&rays.direction[2], first, n);
+        self.set_axis(0, x);
+        self.set_axis(1, y);
+        self.set_axis(2, z);
+        self.set_axes([x, y, z]);
+        self.limit = I::F16::load(limits);
+        self.farthest = self.limit.greatest();
+    }
+
     /// What box tests need along one axis.
     #[inline(always)]
-    pub(super) fn set_axis(&mut self, axis: usize, origin: I::F16, direction: I::F16, pad: f32) {
-        let zero = I::F16::splat(0.0);
+    fn set_axis(&mut self, axis: usize, direction: I::F16) {
+        let (zero, origin) = (I::F16::splat(0.0), self.origin[axis]);
         let negative = direction.lt(zero);
         let smallest = I::F16::splat(WideBvh::SMALLEST);
         let smallest = smallest.blend(zero.sub(smallest), negative);
         let size = direction.max(zero.sub(direction));
         let is_tiny = size.lt(I::F16::splat(WideBvh::SMALLEST));
         let reciprocal = I::F16::splat(1.0).div(direction.blend(smallest, is_tiny));
-        let outwards = I::F16::splat(pad).blend(I::F16::splat(-pad), negative);
-        self.origin[axis] = origin;
+        let outwards = self.pad.blend(zero.sub(self.pad), negative);
         self.reciprocal[axis] = reciprocal;
         self.near_origin[axis] = origin.add(outwards).mul(reciprocal);
         self.far_origin[axis] = origin.sub(outwards).mul(reciprocal);
@@ -67,10 +100,7 @@ impl<I: Isa> Group<I> {
 
     /// What triangle tests need.
     #[inline(always)]
-    pub(super) fn set_axes(&mut self, rays: &RayBatch, first: usize, n: usize) {
-        let x = lanes::<I::F16>(&rays.direction[0], first, n);
-        let y = lanes::<I::F16>(&rays.direction[1], first, n);
-        let z = lanes::<I::F16>(&rays.direction[2], first, n);
+    fn set_axes(&mut self, [x, y, z]: [I::F16; 3]) {
         let zero = I::F16::splat(0.0);
         let (size_x, size_y) = (x.max(zero.sub(x)), y.max(zero.sub(y)));
         let size_z = z.max(zero.sub(z));
@@ -103,9 +133,9 @@ impl<I: Isa> Group<I> {
         }
     }
 
-    /// Whether some ray touches a box before its limit.
+    /// Which rays touch a box before their limits, and where they enter it.
     #[inline(always)]
-    pub(super) fn touches(&self, node: &Node, child: usize) -> bool {
+    pub(super) fn touches(&self, node: &Node, child: usize) -> (u32, I::F16) {
         let (mut enter, mut leave) = (I::F16::splat(0.0), self.limit);
         for axis in 0..3 {
             let lower = I::F16::splat(node.bounds[axis][child]);
@@ -118,7 +148,7 @@ impl<I: Isa> Group<I> {
             enter = near.mul_sub(self.reciprocal[axis], self.near_origin[axis]).max(enter);
             leave = far.mul_sub(self.reciprocal[axis], self.far_origin[axis]).min(leave);
         }
-        enter.le(leave) != 0
+        (enter.le(leave), enter)
     }
 
     /// Offers what the rays meet in a block; tells whether a limit changed.
@@ -131,15 +161,18 @@ impl<I: Isa> Group<I> {
                 break;
             }
             let Some((mut mask, t)) = self.hits::<T>(block, corner) else { continue };
-            let (mut parameters, mut limits) = ([0.0; LANES], [0.0; LANES]);
+            let mut parameters = [0.0; LANES];
             t.store(&mut parameters);
-            self.limit.store(&mut limits);
+            let mut taken = 0;
             while mask != 0 {
-                let lane = mask.trailing_zeros() as usize;
+                let lane = mask.trailing_zeros() as usize % LANES;
                 mask &= mask - 1;
-                limits[lane] = hits.take(first + lane, parameters[lane], id);
+                let limit = hits.take(first + lane, parameters[lane], id);
+                taken |= u32::from(limit <= parameters[lane]) << lane;
             }
-            self.limit = I::F16::load(&limits);
+            // What is taken ends there, or at once where any hit will do.
+            let limit = if T::SORTED { t } else { I::F16::splat(-1.0) };
+            self.limit = self.limit.blend(limit, taken);
             is_changed = true;
         }
         is_changed

@@ -3,22 +3,23 @@
 //! Up to four groups of sixteen rays that go about the same way share a traversal: an interval of
 //! their origins and reciprocal directions is tested against eight boxes at once, the boxes that
 //! remain against the rays themselves, a group at a time, and only groups of which a ray touches a
-//! box go on with it. Each triangle is tested against sixteen rays. What does not go together is
+//! box go on with it. Each triangle is tested against sixteen rays. Rays that begin near each other
+//! and part soon go together as far as several of them touch the same boxes; from there on they are
 //! left to [`stream`].
 //!
 //! Source: S. Boulos, I. Wald and C. Benthin, "Adaptive Ray Packet Reordering", IEEE RT 2008, for
 //! interval tests of packets.
 
 use crate::geometry::lanes::{Isa, Lanes};
-use crate::geometry::wide_bvh::group::{Group, LANES, lanes};
+use crate::geometry::wide_bvh::descent::{STARTS, Start};
+use crate::geometry::wide_bvh::group::{Group, LANES};
+use crate::geometry::wide_bvh::sharing::{Share, Sharing};
 use crate::geometry::wide_bvh::stream::{self, Fleet, Take, TakeAny, TakeNearest};
 use crate::geometry::wide_bvh::{Block, LEAF, Node, WIDTH, WideBvh};
 use crate::math::RayBatch;
 
 /// Groups of a packet.
-const GROUPS: usize = 4;
-/// Fewer rays are not worth a packet.
-const FEWEST: usize = 6;
+pub(super) const GROUPS: usize = 4;
 /// Seven children a level may wait; the builder keeps the tree below 22 levels.
 const STACK: usize = 160;
 
@@ -47,75 +48,24 @@ pub(super) fn blocked<I: Isa>(
 /// Traces all rays of a batch, together where they go together.
 #[inline(always)]
 fn trace<I: Isa, T: Take>(bvh: &WideBvh, rays: &RayBatch, fleet: &mut Fleet, hits: &mut T) {
-    let spread = spread(bvh.blocks.len());
     let mut packet = Packet::<I>::idle();
-    fleet.waiting.clear();
+    let mut sharing = Sharing::new(bvh.blocks.len());
+    fleet.clear();
     let mut first = 0;
-    // Before this one, rays are not asked again whether a whole packet goes together.
-    let mut parted = 0;
     while first < rays.len() {
-        let mut n = (LANES * GROUPS).min(rays.len() - first);
-        if first < parted || !go_together::<I>(rays, first, n, 2.0 * spread) {
-            parted = parted.max(first + n);
-            n = n_alike::<I>(rays, first, LANES.min(n), spread);
-        }
-        if n >= FEWEST {
+        let Share { n, n_alone } = sharing.next::<I>(rays, first);
+        if n_alone < LANES {
             packet.start(bvh, rays, first, n, hits);
+            packet.n_alone = n_alone;
             packet.walk(bvh, hits);
+            packet.stragglers.hand_over(first, fleet);
         } else {
-            fleet.waiting.extend(first as u32..(first + n) as u32);
+            let start = [Start { reference: bvh.root, enter: 0.0 }];
+            (first..first + n).for_each(|ray| fleet.push(ray, &start));
         }
         first += n;
     }
     stream::trace::<I, T>(bvh, rays, fleet, hits);
-}
-
-/// How far apart directions of rays that go together may be, in units of the largest component:
-/// the finer the mesh, the sooner rays part. Found by trial.
-fn spread(n_blocks: usize) -> f32 {
-    let root = (n_blocks as f32).sqrt();
-    (152.0 / (root * root.sqrt())).clamp(0.05, 0.7)
-}
-
-/// Whether directions are no farther apart than `spread` along each axis, in units of the largest
-/// component of all.
-#[inline(always)]
-fn go_together<I: Isa>(rays: &RayBatch, first: usize, n: usize, spread: f32) -> bool {
-    let mut largest = 0.0_f32;
-    let mut widest = 0.0_f32;
-    for axis in 0..3 {
-        let start = lanes::<I::F16>(&rays.direction[axis], first, n);
-        let (mut low, mut high) = (start, start);
-        for offset in (LANES..n).step_by(LANES) {
-            let these = lanes::<I::F16>(&rays.direction[axis], first + offset, n - offset);
-            low = low.min(these);
-            high = high.max(these);
-        }
-        let (low, high) = (low.least(), high.greatest());
-        largest = largest.max(high).max(-low);
-        widest = widest.max(high - low);
-    }
-    widest <= spread * largest
-}
-
-/// How many of the next rays have directions no farther than `spread` from the first along each
-/// axis, in units of its largest component.
-#[inline(always)]
-fn n_alike<I: Isa>(rays: &RayBatch, first: usize, n: usize, spread: f32) -> usize {
-    let direction = rays.ray(first).direction;
-    let last = rays.ray(first + n.min(FEWEST) - 1).direction;
-    if (last - direction).abs().max_element() > spread * direction.abs().max_element() {
-        return 1;
-    }
-    let reach = I::F16::splat(spread * direction.abs().max_element());
-    let zero = I::F16::splat(0.0);
-    let mut alike = I::F16::ALL;
-    for axis in 0..3 {
-        let these = lanes::<I::F16>(&rays.direction[axis], first, n);
-        let apart = these.sub(I::F16::splat(direction[axis]));
-        alike &= apart.max(zero.sub(apart)).le(reach);
-    }
-    (alike.trailing_ones() as usize).clamp(1, n)
 }
 
 /// Groups that go together.
@@ -127,6 +77,9 @@ struct Packet<I: Isa> {
     farthest: f32,
     /// Interval test along each axis; none where directions differ in their sign.
     intervals: [Option<Interval>; 3],
+    /// In a packet of one group, so few rays that touch a box go there alone.
+    n_alone: usize,
+    stragglers: Stragglers,
     stack: Stack,
 }
 
@@ -154,6 +107,8 @@ impl<I: Isa> Packet<I> {
             first: 0,
             farthest: -1.0,
             intervals: [None; 3],
+            n_alone: 0,
+            stragglers: Stragglers::NONE,
             stack: Stack { entries: [Entry::NONE; STACK], n: 0 },
         }
     }
@@ -161,49 +116,32 @@ impl<I: Isa> Packet<I> {
     /// Takes on the rays `first..first + n` of a batch.
     #[inline(always)]
     fn start<T: Take>(&mut self, bvh: &WideBvh, rays: &RayBatch, first: usize, n: usize, hits: &T) {
-        let zero = I::F16::splat(0.0);
         self.n_groups = n.div_ceil(LANES);
         self.first = first;
         self.farthest = -1.0;
-        let mut farthest_origin = zero;
-        for axis in 0..3 {
-            for offset in (0..n).step_by(LANES) {
-                let origin = lanes::<I::F16>(&rays.origin[axis], first + offset, n - offset);
-                farthest_origin = origin.max(farthest_origin);
-                farthest_origin = zero.sub(origin).max(farthest_origin);
-            }
-        }
-        let pad = WideBvh::pad(farthest_origin.greatest(), bvh.magnitude);
-        for axis in 0..3 {
-            for index in 0..self.n_groups {
-                let offset = index * LANES;
-                let origin = lanes::<I::F16>(&rays.origin[axis], first + offset, n - offset);
-                let direction = lanes::<I::F16>(&rays.direction[axis], first + offset, n - offset);
-                self.groups[index].set_axis(axis, origin, direction, pad);
-            }
-            self.intervals[axis] = self.interval(axis, pad);
-        }
-        for index in 0..self.n_groups {
+        for (index, group) in self.groups[..self.n_groups].iter_mut().enumerate() {
             let offset = index * LANES;
             let mut limits = [-1.0; LANES];
             for (lane, limit) in limits.iter_mut().enumerate().take(n - offset) {
                 *limit = hits.limit(first + offset + lane);
             }
-            let group = &mut self.groups[index];
-            group.limit = I::F16::load(&limits);
-            group.farthest = group.limit.greatest();
+            group.start(bvh, rays, first + offset, n - offset, &limits);
             self.farthest = self.farthest.max(group.farthest);
-            group.set_axes(rays, first + offset, n - offset);
+        }
+        for axis in 0..3 {
+            self.intervals[axis] = self.interval(axis);
         }
     }
 
     /// What the box tests along an axis have in common, if the directions have their sign.
     #[inline(always)]
-    fn interval(&self, axis: usize, pad: f32) -> Option<Interval> {
+    fn interval(&self, axis: usize) -> Option<Interval> {
         let [first, others @ ..] = &self.groups[..self.n_groups] else { return None };
         let is_negative = first.negative[axis] != 0;
         let (mut least, mut greatest) = (first.reciprocal[axis], first.reciprocal[axis]);
-        let (mut low, mut high) = (first.origin[axis], first.origin[axis]);
+        let low_of = |group: &Group<I>| group.origin[axis].sub(group.pad);
+        let high_of = |group: &Group<I>| group.origin[axis].add(group.pad);
+        let (mut low, mut high) = (low_of(first), high_of(first));
         let mut are_negative = first.negative[axis];
         for group in others {
             if (group.negative[axis] != 0) != is_negative {
@@ -212,14 +150,14 @@ impl<I: Isa> Packet<I> {
             are_negative &= group.negative[axis];
             least = least.min(group.reciprocal[axis]);
             greatest = greatest.max(group.reciprocal[axis]);
-            low = low.min(group.origin[axis]);
-            high = high.max(group.origin[axis]);
+            low = low.min(low_of(group));
+            high = high.max(high_of(group));
         }
         if is_negative && are_negative != I::F16::ALL {
             return None;
         }
         let reciprocals = [least.least(), greatest.greatest()];
-        let (low, high) = (low.least() - pad, high.greatest() + pad);
+        let (low, high) = (low.least(), high.greatest());
         let (near, far) = if is_negative { (axis + 3, axis) } else { (axis, axis + 3) };
         // The near plane is met first from the origin farthest along the direction.
         let (foremost, hindmost) = if is_negative { (low, high) } else { (high, low) };
@@ -241,7 +179,7 @@ impl<I: Isa> Packet<I> {
         loop {
             while current.reference & LEAF == 0 {
                 let node = &bvh.nodes[current.reference as usize];
-                match self.enter(node, current.groups) {
+                match self.enter(bvh, node, current.groups) {
                     Some(nearest) => current = nearest,
                     None => break,
                 }
@@ -264,7 +202,7 @@ impl<I: Isa> Packet<I> {
 
     /// The nearest of the children that some ray touches; the others go onto the stack.
     #[inline(always)]
-    fn enter(&mut self, node: &Node, groups: u32) -> Option<Entry> {
+    fn enter(&mut self, bvh: &WideBvh, node: &Node, groups: u32) -> Option<Entry> {
         let (mut enter, mut leave) = (I::F8::splat(0.0), I::F8::splat(self.farthest));
         for interval in &self.intervals {
             let Some(interval) = interval else { continue };
@@ -286,16 +224,22 @@ impl<I: Isa> Packet<I> {
         while left != 0 {
             let child = left.trailing_zeros() as usize;
             left &= left - 1;
+            let reference = node.children[child];
             let mut touching = 0;
             let mut asked = groups;
             while asked != 0 {
                 let group = asked.trailing_zeros() as usize;
                 asked &= asked - 1;
-                let is_touched = self.groups[group % GROUPS].touches(node, child);
-                touching |= u32::from(is_touched) << group;
+                let (rays, entered) = self.groups[group % GROUPS].touches(node, child);
+                let n = rays.count_ones() as usize;
+                let stays =
+                    n > self.n_alone || (n > 0 && !self.stragglers.add(rays, entered, reference));
+                touching |= u32::from(stays) << group;
             }
             if touching != 0 {
-                let reference = node.children[child];
+                if self.n_alone > 0 {
+                    bvh.prefetch::<I>(reference);
+                }
                 self.stack
                     .insert(base, Entry { reference, enter: enters[child], groups: touching });
             }
@@ -324,6 +268,46 @@ impl<I: Isa> Packet<I> {
             }
         }
         is_changed
+    }
+}
+
+/// Rays of a group that go on alone from some places.
+struct Stragglers {
+    n: [u8; LANES],
+    starts: [[Start; STARTS]; LANES],
+}
+
+impl Stragglers {
+    const NONE: Self =
+        Self { n: [0; LANES], starts: [[Start { reference: 0, enter: 0.0 }; STARTS]; LANES] };
+
+    /// Notes a place for some rays, which may be none; `false` where one has too many already.
+    #[inline(always)]
+    fn add<F: Lanes>(&mut self, rays: u32, entered: F, reference: u32) -> bool {
+        let mut enters = [0.0; LANES];
+        entered.store(&mut enters);
+        let mut left = rays;
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize;
+            left &= left - 1;
+            let Some(start) = self.starts[lane].get_mut(usize::from(self.n[lane])) else {
+                return false;
+            };
+            *start = Start { reference, enter: enters[lane] };
+            self.n[lane] += 1;
+        }
+        true
+    }
+
+    /// Lets them wait for the stream; `first` is the place of the group in its batch.
+    #[inline(always)]
+    fn hand_over(&mut self, first: usize, fleet: &mut Fleet) {
+        for (lane, n) in self.n.iter_mut().enumerate() {
+            if *n > 0 {
+                fleet.push(first + lane, &self.starts[lane][..usize::from(*n)]);
+                *n = 0;
+            }
+        }
     }
 }
 

@@ -6,7 +6,7 @@
 
 use crate::geometry::lanes::Isa;
 use crate::geometry::nearest::Nearest;
-use crate::geometry::wide_bvh::descent::{DONE, Descent};
+use crate::geometry::wide_bvh::descent::{DONE, Descent, Start};
 use crate::geometry::wide_bvh::{LEAF, WideBvh};
 use crate::math::{PrimitiveId, RayBatch};
 
@@ -76,12 +76,39 @@ impl Take for TakeAny<'_> {
 pub(super) struct Fleet {
     descents: [Descent; FLEET],
     /// Rays of the batch that wait for a place.
-    pub(super) waiting: Vec<u32>,
+    waiting: Vec<Waiting>,
+    /// Where they begin.
+    starts: Vec<Start>,
+}
+
+/// A ray of the batch and where it begins: a range of [`Fleet::starts`].
+struct Waiting {
+    ray: u32,
+    first: u32,
+    n: u32,
 }
 
 impl Fleet {
-    pub(super) const IDLE: Self =
-        Self { descents: [const { Descent::IDLE }; FLEET], waiting: Vec::new() };
+    pub(super) const IDLE: Self = Self {
+        descents: [const { Descent::IDLE }; FLEET],
+        waiting: Vec::new(),
+        starts: Vec::new(),
+    };
+
+    /// Lets a ray of the batch wait, with the places where it begins: 1 to [`STARTS`].
+    #[inline(always)]
+    pub(super) fn push(&mut self, ray: usize, starts: &[Start]) {
+        let first = self.starts.len() as u32;
+        self.starts.extend_from_slice(starts);
+        self.waiting.push(Waiting { ray: ray as u32, first, n: starts.len() as u32 });
+    }
+
+    /// Forgets the rays that waited.
+    #[inline(always)]
+    pub(super) fn clear(&mut self) {
+        self.waiting.clear();
+        self.starts.clear();
+    }
 }
 
 /// Which of the fleet are at nodes, at blocks, or done.
@@ -152,14 +179,19 @@ pub(super) fn trace<I: Isa, T: Take>(
         }
         for member in now.done.members() {
             let member = usize::from(*member);
-            while let Some(ray) = fleet.waiting.get(next) {
-                let ray = *ray as usize;
+            while let Some(waiting) = fleet.waiting.get(next) {
+                let ray = waiting.ray as usize;
                 let limit = hits.limit(ray);
                 next += 1;
-                if limit >= 0.0 {
-                    fleet.descents[member].start(bvh, &rays.ray(ray), limit);
+                if limit < 0.0 {
+                    continue;
+                }
+                let starts = &fleet.starts[waiting.first as usize..][..waiting.n as usize];
+                let descent = &mut fleet.descents[member];
+                descent.go_on::<T>(bvh, &rays.ray(ray), limit, starts);
+                if descent.current != DONE {
                     ray_of[member] = ray;
-                    lists.push(member, bvh.root);
+                    lists.push(member, descent.current);
                     break;
                 }
             }

@@ -9,7 +9,7 @@ use super::Emission;
 use crate::brdf::{Ward, WardForm};
 use crate::color::Rgb;
 use crate::geometry::mesh::Mesh;
-use crate::geometry::{AcceleratorKind, Geometry, Hit, Instance, Shape, TracedMesh};
+use crate::geometry::{AcceleratorKind, Geometry, Hit, Instance, Nearest, Shape, TracedMesh};
 use crate::math::sampler::{SampleNumbers, Sampler};
 use crate::math::{Ray, RayBatch, Transform};
 use crate::scene::material::ColorSource;
@@ -52,7 +52,7 @@ fn first_hits(geometry: &Geometry, from: Vec3, directions: &[Vec3]) -> Vec<Optio
     directions.iter().for_each(|d| rays.push(Ray::new(from, *d)));
     let mut hits = Vec::new();
     geometry.intersect(&rays, &mut hits);
-    hits
+    hits.iter().map(Nearest::hit).collect()
 }
 
 const N_COS: usize = 16;

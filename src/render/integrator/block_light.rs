@@ -17,11 +17,12 @@ impl TileRenderer<'_> {
         let material = coat.material;
         if lights.len() > LIGHTS_AT_ONCE {
             for i in 0..block.n {
-                self.sample_lights(block.paths[i], &block.shading.shading(coat, i));
+                let path = self.paths[block.places[i] as usize];
+                self.sample_lights(path, &block.shading.shading(coat, i));
             }
             return;
         }
-        let depth = block.paths[0].depth;
+        let depth = block.depth;
         let gloss = (material.specular != Rgb::ZERO).then_some((material.specular, material.lobe));
         let mut u = [[0.0; BLOCK]; 2];
         for (index, light) in lights.iter().enumerate() {

@@ -22,7 +22,7 @@ impl TileRenderer<'_> {
                     }
                     continue;
                 }
-                if let Some(hit) = self.hits[index] {
+                if let Some(hit) = self.hits[index].hit() {
                     self.groups.push(world, index as u32, hit);
                     continue;
                 }
@@ -67,7 +67,7 @@ impl TileRenderer<'_> {
             let rays = rays.get_or_insert_with(|| self.rays.block(start, n));
             light.intersect_block(rays, &mut t);
             for i in 0..n {
-                let t_surface = self.hits[start + i].map_or(f32::INFINITY, |hit| hit.t);
+                let t_surface = self.hits[start + i].hit().map_or(f32::INFINITY, |hit| hit.t);
                 let is_first = nearest[i].is_none() || t[i] < best[i];
                 let is_before = t[i] < t_surface || t_surface == f32::INFINITY;
                 if t[i] > 0.0 && is_first && is_before {

@@ -1,6 +1,6 @@
 //! Windows of impossible sizes, and places that are gone: the scene and its picture stay.
 
-use super::whole::{PATIENCE, scene_file, wait_until, window};
+use super::whole::{PATIENCE, scene_file, wait_until, window, window_with};
 use crate::session::Phase;
 use crate::window::app::App;
 use egui_kittest::Harness;
@@ -78,4 +78,26 @@ fn what_cannot_be_written_is_told_and_nothing_is_lost() {
     std::fs::create_dir(&place).unwrap();
     harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::S);
     wait_until(&mut harness, |app| !app.document.is_dirty());
+}
+
+#[test]
+fn a_copy_that_cannot_be_kept_is_told_once_and_tried_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = folder.path().join("own");
+    std::fs::create_dir(&own).unwrap();
+    let mut harness = window_with(&scene_file(folder.path()), [1024.0, 700.0], Some(own.clone()));
+    std::fs::remove_dir_all(&own).unwrap();
+    harness.key_press(egui::Key::D);
+    harness.run_steps(80);
+    wait_for_words(&mut harness, "cannot keep a copy");
+    harness.run_steps(160);
+    let n_told = harness.query_all_by_label_contains("cannot keep a copy").count();
+    assert!(n_told <= 1, "told {n_told} times");
+    // Nothing is edited meanwhile: what failed is tried again.
+    std::fs::create_dir(&own).unwrap();
+    let since = Instant::now();
+    while !own.join("recovery-1.png").is_file() {
+        assert!(since.elapsed() < PATIENCE, "no copy is kept");
+        harness.step();
+    }
 }

@@ -6,6 +6,7 @@ use crate::loader::Source;
 use crate::window::state::{InterfaceState, Remembered};
 use egui::{Key, Modifiers, Role, ThemePreference};
 use egui_kittest::kittest::Queryable as _;
+use std::sync::Arc;
 
 const SIZE: [f32; 2] = [1400.0, 900.0];
 
@@ -28,6 +29,24 @@ fn closing_a_scene_shows_the_gallery_and_costs_nothing_more() {
     wait_until(&mut harness, |app| app.files.has_scene);
     assert!(!harness.state().interface.start_shown, "the page hides the scene");
     assert_eq!(harness.state().files.title, "small", "another scene");
+}
+
+#[test]
+fn nothing_of_a_closed_scene_stays_in_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&scene_file(folder.path()), SIZE);
+    wait_until(&mut harness, |app| app.picture_on_show().is_some());
+    let work = &harness.state().work;
+    let scene = Arc::downgrade(work.scene().unwrap());
+    let assets = Arc::downgrade(&work.assets);
+    let frame = Arc::downgrade(&work.session.latest().unwrap());
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::W);
+    wait_until(&mut harness, |app| !app.files.has_scene);
+    wait_until(&mut harness, |_| {
+        let n_left = [scene.strong_count(), assets.strong_count(), frame.strong_count()];
+        n_left == [0; 3]
+    });
+    assert!(harness.state().picture_on_show().is_none(), "its picture is still there");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! What is wrong is said in one message, with the right exit status, and nothing is lost.
 
+use std::io::{BufRead as _, BufReader};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
@@ -121,9 +122,63 @@ fn a_full_disk_leaves_the_old_file_and_nothing_else() {
     command.args(["-c", script, env!("CARGO_BIN_EXE_penumbra")]).current_dir(place.path(""));
     let run = Run::of(&mut command);
     assert_eq!(run.status, Some(1), "{}", run.stderr);
-    assert!(run.stderr.contains("a.exr: cannot be written"), "{}", run.stderr);
+    let is_plain =
+        run.stderr.contains("a.exr: cannot be written") && !run.stderr.contains(".penumbra-");
+    assert!(is_plain, "{}", run.stderr);
     assert_eq!(place.read("a.exr"), b"as it was", "the old file");
     assert_eq!(files_in(&place), ["a.exr", "ball.toml"], "nothing is left behind");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_picture_whose_place_is_gone_when_it_is_done_is_kept_elsewhere() {
+    let place = Place::with(&[("m.obj", MESH)]);
+    place.write("gone/inside", b"");
+    place.write("elsewhere/inside", b"");
+    let mut child = place
+        .command()
+        .args(["render", "m.obj", "-o", "gone/a.png", "--width", "8", "--height", "6"])
+        .args(["-s", "1048576", "--time", "1"])
+        .env("TMPDIR", place.path("elsewhere"))
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // It warns of a library that is not there when all is read and nothing is rendered yet.
+    let mut words = BufReader::new(child.stderr.take().unwrap()).lines();
+    let first = words.next().unwrap().unwrap();
+    assert!(first.starts_with("warning: "), "{first}");
+    std::fs::remove_dir_all(place.path("gone")).unwrap();
+    let last = words.last().unwrap().unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(1), "{last}");
+    let (reason, kept) = last.split_once("; the picture is in ").expect(&last);
+    assert!(reason.contains("gone/a.png: cannot be written"), "{last}");
+    let bytes = std::fs::read(kept).unwrap();
+    assert_eq!(super::Png::read(&bytes).width, 8, "the picture that was kept");
+}
+
+/// Where nobody asks for a number of threads, few do; where somebody does, it is these or none.
+/// Limits of address space stand for any system that runs out of threads.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_system_without_threads_or_memory_is_told_with_what_would_help() {
+    let place = Place::with_ball();
+    let limited = |kibibytes: u32, options: &str| {
+        let script =
+            format!("ulimit -v {kibibytes}; exec \"$0\" render ball.toml -o a.png {options}");
+        let mut command = std::process::Command::new("sh");
+        command.args(["-c", &script, env!("CARGO_BIN_EXE_penumbra")]).current_dir(place.path(""));
+        Run::of(&mut command)
+    };
+    let run = limited(1 << 20, "-t 1024");
+    let is_told = run.stderr.contains("1024 threads") && run.stderr.contains("smaller number");
+    assert!(run.status == Some(1) && is_told, "{:?}: {}", run.status, run.stderr);
+    let run = limited(1 << 20, "--width 4000 --height 3000");
+    let needs = "error: a picture of 4000 x 3000 pixels takes 1.6 GiB of memory, and ";
+    let is_told = run.stderr.starts_with(needs) && run.stderr.contains("MiB are free");
+    assert!(run.status == Some(1) && is_told, "{:?}: {}", run.status, run.stderr);
+    assert_eq!(files_in(&place), ["ball.toml"], "a picture of nothing");
+    let run = limited(1 << 20, "");
+    assert_eq!(run.status, Some(0), "{}", run.stderr);
 }
 
 #[cfg(unix)]

@@ -68,3 +68,33 @@ fn a_scene_file_of_gigabytes_is_refused_by_its_length() {
     let error = super::open(place.path("s.toml"), "3 GiB").expect_err("3 GiB");
     assert!(error.contains("3072 MiB long; at most 8 MiB"), "{error}");
 }
+
+#[test]
+fn files_of_another_kind_are_told_what_can_be_opened() {
+    let place = Place::new();
+    for (name, bytes) in [
+        ("photo.jpg", &b"\xff\xd8\xff\xe0\0\x10JFIF"[..]),
+        ("scene", b"\x7fELF\x02\xf0"),
+        ("archive.zip", b"PK\x03\x04\x80\xff"),
+    ] {
+        let error = opened(&place, name, bytes, name).expect_err(name);
+        assert!(error.contains(name) && error.contains(".toml, .obj or .png"), "{error}");
+    }
+}
+
+/// The decoder quotes some of its words.
+#[test]
+fn what_a_decoder_says_is_no_riddle() {
+    let place = Place::with_mesh();
+    let data = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/color.jpg");
+    let picture = std::fs::read(data).unwrap();
+    let arithmetic: Vec<u8> = picture
+        .iter()
+        .enumerate()
+        .map(|(at, byte)| if *byte == 0xc0 && picture[at - 1] == 0xff { 0xc9 } else { *byte })
+        .collect();
+    place.write("i.jpg", &arithmetic);
+    let scene = format!("{BALL}[[textures]]\nname = \"t\"\ntype = \"image\"\nfile = \"i.jpg\"\n");
+    let error = opened(&place, "s.toml", scene.as_bytes(), "i.jpg").expect_err("i.jpg");
+    assert!(error.contains("JPEG") && !error.contains(['\\', '"']), "{error}");
+}

@@ -66,7 +66,7 @@ fn nothing_escapes_from_closed_meshes() {
                 let geometry = Geometry::new(vec![instance], kind);
                 let mut hits = Vec::new();
                 geometry.intersect(&rays, &mut hits);
-                let escaped = hits.iter().filter(|hit| hit.is_none()).count();
+                let escaped = hits.iter().filter(|hit| !hit.is_hit()).count();
                 assert_eq!(escaped, 0, "case {i}: rays escaped of {}, {}", rays.len(), kind.name());
             }
         }

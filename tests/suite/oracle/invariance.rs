@@ -252,9 +252,9 @@ fn unshadowed(job: &RenderJob) -> Vec<f32> {
             world.geometry.intersect(&rays, &mut hits);
             let mut sum = 0.0;
             for (i, hit) in hits.iter().enumerate() {
-                let Some(hit) = hit else { continue };
+                let Some(hit) = hit.hit() else { continue };
                 let ray = rays.ray(i);
-                let surface = world.geometry.surface(&ray, *hit);
+                let surface = world.geometry.surface(&ray, hit);
                 let side = if surface.normal.dot(ray.direction) > 0.0 { -1.0 } else { 1.0 };
                 for light in &scene.lights {
                     let Emitter::Sun { towards, irradiance } = light.emitter else { continue };

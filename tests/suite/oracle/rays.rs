@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 use penumbra::color::Rgb;
 use penumbra::geometry::mesh::Mesh;
-use penumbra::geometry::{AcceleratorKind, Geometry, Hit, Instance, Shape, TracedMesh};
+use penumbra::geometry::{AcceleratorKind, Geometry, Hit, Instance, Nearest, Shape, TracedMesh};
 use penumbra::math::{PrimitiveId, Ray, RayBatch, Transform};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestCaseError};
@@ -22,6 +22,7 @@ fn check(instances: &[Instance], rays: &RayBatch) -> Result<(), TestCaseError> {
         let geometry = Geometry::new(instances.to_vec(), kind);
         let (mut hits, mut blocked, mut shares) = (Vec::new(), Vec::new(), Vec::new());
         geometry.intersect(rays, &mut hits);
+        let hits: Vec<Option<Hit>> = hits.iter().map(Nearest::hit).collect();
         geometry.occluded(rays, &mut blocked);
         // Two of three objects are clear, with factors that tell the order of multiplication.
         let clear = |hit: Hit| {
@@ -330,7 +331,7 @@ fn empty_meshes_are_never_met() {
             let (mut hits, mut blocked) = (Vec::new(), Vec::new());
             geometry.intersect(&rays, &mut hits);
             geometry.occluded(&rays, &mut blocked);
-            assert_eq!((hits[0], blocked[0]), (None, false), "{n} with {}", kind.name());
+            assert_eq!((hits[0].hit(), blocked[0]), (None, false), "{n} with {}", kind.name());
             assert_eq!(geometry.bounds(), None, "no bounds");
         }
     }

@@ -1,0 +1,124 @@
+//! Which rays of a batch share a packet.
+
+use crate::geometry::lanes::{Isa, Lanes};
+use crate::geometry::wide_bvh::group::{LANES, lanes};
+use crate::geometry::wide_bvh::packet::GROUPS;
+use crate::math::RayBatch;
+
+/// Fewer rays that are alike are not worth a packet that stays together.
+const FEWEST: usize = 6;
+
+/// The next rays of a batch that start together.
+pub(super) struct Share {
+    /// How many.
+    pub(super) n: usize,
+    /// From boxes that so few of them touch they go on alone: 0 where they stay together, all
+    /// where they had better not start together.
+    pub(super) n_alone: usize,
+}
+
+/// Divides a batch as it goes on.
+pub(super) struct Sharing {
+    spread: f32,
+    n_alone: usize,
+    /// Rays before this one are known not to make one large packet,
+    parted: usize,
+    /// but runs of rays that are alike.
+    are_runs: bool,
+}
+
+impl Sharing {
+    /// For a tree of so many blocks. The finer the mesh, the sooner rays part, and the less of the
+    /// tree stays in the cache of the processor, which packets do not wait for with other rays under
+    /// way. All figures were found by trial.
+    pub(super) fn new(n_blocks: usize) -> Self {
+        let root = (n_blocks as f32).sqrt();
+        let spread = (152.0 / (root * root.sqrt())).clamp(0.05, 0.7);
+        let n_alone = match n_blocks {
+            0..10_000 => 3,
+            10_000..40_000 => 4,
+            40_000..150_000 => 8,
+            _ => LANES,
+        };
+        Self { spread, n_alone, parted: 0, are_runs: false }
+    }
+
+    /// What starts at a ray of the batch.
+    #[inline(always)]
+    pub(super) fn next<I: Isa>(&mut self, rays: &RayBatch, first: usize) -> Share {
+        let n = (LANES * GROUPS).min(rays.len() - first);
+        if first >= self.parted {
+            if go_together::<I>(rays, first, n, self.spread) {
+                return Share { n, n_alone: 0 };
+            }
+            self.parted = first + n;
+            self.are_runs = are_runs::<I>(rays, first, n, self.spread);
+        }
+        let n = n.min(LANES);
+        if self.are_runs {
+            let n = n_alike::<I>(rays, first, n, self.spread);
+            Share { n, n_alone: if n < FEWEST { LANES } else { 0 } }
+        } else {
+            Share { n, n_alone: self.n_alone }
+        }
+    }
+}
+
+/// Whether all directions are no farther than `spread` from the first along each axis, in units of
+/// its largest component.
+#[inline(always)]
+fn go_together<I: Isa>(rays: &RayBatch, first: usize, n: usize, spread: f32) -> bool {
+    let direction = rays.ray(first).direction;
+    let reach = I::F16::splat(spread * direction.abs().max_element());
+    let zero = I::F16::splat(0.0);
+    let mut farthest = zero;
+    for axis in 0..3 {
+        let start = I::F16::splat(direction[axis]);
+        for offset in (0..n).step_by(LANES) {
+            let these = lanes::<I::F16>(&rays.direction[axis], first + offset, n - offset);
+            let apart = these.sub(start);
+            farthest = apart.max(zero.sub(apart)).max(farthest);
+        }
+    }
+    farthest.le(reach) == I::F16::ALL
+}
+
+/// How many of the next rays have directions no farther than `spread` from the first along each
+/// axis, in units of its largest component.
+#[inline(always)]
+fn n_alike<I: Isa>(rays: &RayBatch, first: usize, n: usize, spread: f32) -> usize {
+    let direction = rays.ray(first).direction;
+    let last = rays.ray(first + n.min(FEWEST) - 1).direction;
+    if (last - direction).abs().max_element() > spread * direction.abs().max_element() {
+        return 1;
+    }
+    let reach = I::F16::splat(spread * direction.abs().max_element());
+    let zero = I::F16::splat(0.0);
+    let mut alike = I::F16::ALL;
+    for axis in 0..3 {
+        let these = lanes::<I::F16>(&rays.direction[axis], first, n);
+        let apart = these.sub(I::F16::splat(direction[axis]));
+        alike &= apart.max(zero.sub(apart)).le(reach);
+    }
+    (alike.trailing_ones() as usize).clamp(1, n)
+}
+
+/// Whether most rays go about where the one before them goes.
+#[inline(always)]
+fn are_runs<I: Isa>(rays: &RayBatch, first: usize, n: usize, spread: f32) -> bool {
+    let reach = I::F16::splat(spread * rays.ray(first).direction.abs().max_element());
+    let zero = I::F16::splat(0.0);
+    let mut n_alike = 0;
+    for offset in (0..n - 1).step_by(LANES) {
+        let left = (n - 1 - offset).min(LANES);
+        let mut alike = u32::MAX >> (32 - left);
+        for axis in 0..3 {
+            let these = lanes::<I::F16>(&rays.direction[axis], first + offset, left);
+            let next = lanes::<I::F16>(&rays.direction[axis], first + offset + 1, left);
+            let apart = next.sub(these);
+            alike &= apart.max(zero.sub(apart)).le(reach);
+        }
+        n_alike += alike.count_ones() as usize;
+    }
+    4 * n_alike >= 3 * n
+}
