@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! cargo bench --bench convergence [-- SCENE ...] [--width W] [--tiles N] [--samples MAX]
-//!                                  [--report FOLDER]
+//!                                  [--seeds N] [--report FOLDER]
 //! ```
 //!
 //! One JSON line a point. The error is the root mean square of the difference of two pictures that
@@ -11,9 +11,11 @@
 //! itself gives, and the seconds of one picture. The third kind, "adaptive", is "sobol" with samples
 //! that go where the error is. With `--tiles`, N tiles of 16 x 16 pixels, spread over the picture,
 //! stand for the whole of it. `--report` writes `convergence.md`, with the table, and the plots
-//! `convergence-samples.svg` and `convergence-seconds.svg`.
+//! `convergence-samples.svg` and `convergence-seconds.svg`. With `--seeds`, the noise figure is judged
+//! instead, by that many pictures, and `--report` writes `noise-figure.md`: see [`figure`].
 #![expect(clippy::print_stdout, reason = "a bench prints its figures")]
 
+mod figure;
 mod plot;
 
 use std::fmt::Write as _;
@@ -39,6 +41,7 @@ struct Options {
     width: u32,
     tiles: Option<u32>,
     samples: u32,
+    seeds: Option<u32>,
     report: Option<PathBuf>,
 }
 
@@ -76,23 +79,29 @@ struct Measured {
 fn main() -> Result<(), Failure> {
     let options = options()?;
     let pool = penumbra::threads::pool("bench", penumbra::threads::available())?;
-    let mut all = Vec::new();
+    let (mut all, mut judged) = (Vec::new(), Vec::new());
     for entry in GALLERY {
         if !options.scenes.is_empty() && !options.scenes.iter().any(|name| name == entry.name) {
             continue;
         }
         let loaded = load(&Source::Gallery(entry.name), &[], &AtomicBool::new(false))?;
-        all.push(pool.install(|| measure(entry.name, &loaded, &options))?);
+        match options.seeds {
+            Some(n) => {
+                judged.extend(pool.install(|| figure::judge(entry.name, &loaded, &options, n))?);
+            }
+            None => all.push(pool.install(|| measure(entry.name, &loaded, &options))?),
+        }
     }
-    if let Some(folder) = &options.report {
-        report(folder, &options, &all)?;
+    match (&options.report, options.seeds) {
+        (Some(folder), Some(n)) => figure::report(folder, &options, n, &judged),
+        (Some(folder), None) => report(folder, &options, &all),
+        (None, _) => Ok(()),
     }
-    Ok(())
 }
 
 fn options() -> Result<Options, Failure> {
-    let mut options =
-        Options { scenes: Vec::new(), width: 48, tiles: None, samples: 4096, report: None };
+    let (scenes, width, samples) = (Vec::new(), 48, 4096);
+    let mut options = Options { scenes, width, tiles: None, samples, seeds: None, report: None };
     let mut arguments = std::env::args().skip(1).filter(|argument| argument != "--bench");
     while let Some(argument) = arguments.next() {
         let mut value = || arguments.next().ok_or("an option lacks its value");
@@ -100,6 +109,7 @@ fn options() -> Result<Options, Failure> {
             "--width" => options.width = value()?.parse()?,
             "--tiles" => options.tiles = Some(value()?.parse()?),
             "--samples" => options.samples = value()?.parse()?,
+            "--seeds" => options.seeds = Some(value()?.parse()?),
             "--report" => options.report = Some(value()?.into()),
             _ => options.scenes.push(argument),
         }
@@ -222,9 +232,8 @@ fn report(folder: &Path, options: &Options, all: &[Measured]) -> Result<(), Fail
          of the gallery in {} {} wide, written by\n\n```sh\ncargo bench --bench convergence -- --width {} {}\
          --samples {} --report docs\n```\n\n\
          The slope is that of log error over log samples from 16 samples on; the gain is the squared \
-         error of \"random\" over that of the row at 64 samples; the last column is the least and the \
-         most that the renderer's own noise figure says, over the truth, which two pictures of so few pixels \
-         tell no better than to a tenth or two.\n\
+         error of \"random\" over that of the row at 64 samples; what the \
+         renderer's own noise figure says is compared with the truth in [a table of its own](noise-figure.md).\n\
          In a small picture a pixel covers a whole edge of a shadow or a circle of confusion; in one of \
          full size it does not, and Sobol points gain more: see \
          [what bounds the slope](correctness.md#how-fast-the-error-falls).\n\n\
@@ -235,8 +244,8 @@ fn report(folder: &Path, options: &Options, all: &[Measured]) -> Result<(), Fail
     for n in &columns {
         write!(text, " {n} |")?;
     }
-    text += " slope | gain | seconds | noise figure |\n|---|---|";
-    text += &"---|".repeat(columns.len() + 4);
+    text += " slope | gain | seconds |\n|---|---|";
+    text += &"---|".repeat(columns.len() + 3);
     text += "\n";
     for scene in all {
         for (kind, curve) in KINDS.iter().zip(&scene.curves) {
@@ -250,11 +259,9 @@ fn report(folder: &Path, options: &Options, all: &[Measured]) -> Result<(), Fail
             let gain = at(&scene.curves[0], 64)
                 .zip(at(curve, 64))
                 .map_or(f64::NAN, |(random, this)| (random.percent / this.percent).powi(2));
-            let ratios = curve.iter().skip(2).map(|point| point.figure / point.percent);
-            let (least, most) = ratios.fold((f64::MAX, 0.0_f64), |(a, b), r| (a.min(r), b.max(r)));
             let seconds = curve.last().map_or(f64::NAN, |point| point.seconds);
             let slope = slope(curve);
-            writeln!(text, " {slope:.2} | {gain:.1} | {seconds:.1} | {least:.2} to {most:.2} |")?;
+            writeln!(text, " {slope:.2} | {gain:.1} | {seconds:.1} |")?;
         }
     }
     std::fs::write(folder.join("convergence.md"), text)?;

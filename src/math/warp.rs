@@ -123,4 +123,19 @@ mod tests {
             assert!(highest > 0.98, "highest point of {n} corners is {highest}");
         }
     }
+
+    /// The mean squared distance from the centre is a sixth of 2 + cos 2π/n: that of two corners and
+    /// their product, over the triangle of both and the centre.
+    #[test]
+    fn polygon_is_uniform() {
+        for n in [3, 4, 7] {
+            let steps = 210;
+            let sum: f64 =
+                grid(steps).map(|u| f64::from(square_to_polygon(u, n).length_squared())).sum();
+            let mean = sum / f64::from(steps * steps);
+            let angle = 2.0 * std::f64::consts::PI / f64::from(n);
+            let expected = (2.0 + portable::cos_f64(angle)) / 6.0;
+            assert!((mean / expected - 1.0).abs() < 1e-3, "{mean}, not {expected}, of {n} corners");
+        }
+    }
 }

@@ -6,21 +6,23 @@ use crate::color::{Rgb, luminance};
 ///
 /// The error of Sobol points shows in the differences between blocks of successive samples. When
 /// the count reaches a power of two, n, the samples fall into four quarters; `between_halves` and
-/// `between_quarters` keep how far those were apart until the next power.
+/// `between_quarters` keep how far those were apart until the next power, and `between_eighths` what
+/// was known of the first half when it was the whole.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct PixelSums {
     /// Of the radiance.
     pub(super) radiance: [f64; 3],
     /// Of the squared luminance.
     pub(super) squares: f64,
-    /// Luminance up to the last mark: at counts 2^k and 3 2^k.
-    mark: f64,
-    /// Luminance of the first three quarters of the next power of two.
+    /// Luminance of the first three quarters of the next power of two, as far as the count is: up to
+    /// the last mark, at counts 2^k and 3 2^k.
     quarters: [f32; 3],
     /// Squared difference of the means of both halves, at the last power of two (2 or more).
     pub(super) between_halves: f32,
     /// The same of the quarters of each half, their mean, at the last power of two (4 or more).
     pub(super) between_quarters: f32,
+    /// The same of the eighths of the first half, at the last power of two (8 or more).
+    pub(super) between_eighths: f32,
     /// Samples so far.
     pub(super) n_samples: u32,
 }
@@ -56,11 +58,9 @@ impl PixelSums {
         0.2126 * r + 0.7152 * g + 0.0722 * b
     }
 
-    fn since_mark(&mut self) -> f32 {
-        let luminance = self.luminance();
-        let block = luminance - self.mark;
-        self.mark = luminance;
-        block as f32
+    fn since_mark(&self) -> f32 {
+        let up_to_mark: f64 = self.quarters.iter().map(|part| f64::from(*part)).sum();
+        (self.luminance() - up_to_mark) as f32
     }
 
     /// The count has reached a power of two: what was a whole is the first half of the next.
@@ -76,6 +76,7 @@ impl PixelSums {
             }
             _ => {
                 self.between_halves = ((a + b - c - last) * (2.0 / n)).powi(2);
+                self.between_eighths = self.between_quarters;
                 let (first, second) = ((a - b) * (4.0 / n), (c - last) * (4.0 / n));
                 self.between_quarters = 0.5 * (first.powi(2) + second.powi(2));
                 self.quarters = [a + b, c + last, 0.0];
@@ -115,6 +116,18 @@ mod tests {
                 let found = f64::from(pixel.between_quarters);
                 assert!((found - expected).abs() <= 1e-5, "{found}, not {expected} at {n}");
             }
+            if whole >= 8 {
+                let (first, second) = seen[..whole / 2].split_at(whole / 4);
+                let expected = 0.5 * (apart(first) + apart(second));
+                let found = f64::from(pixel.between_eighths);
+                assert!((found - expected).abs() <= 1e-5, "{found}, not {expected} at {n}");
+            }
         }
+    }
+
+    /// Sums of a cache line: they decide how large a picture fits into memory.
+    #[test]
+    fn a_pixel_takes_64_bytes() {
+        assert_eq!(size_of::<PixelSums>(), 64);
     }
 }

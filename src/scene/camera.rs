@@ -96,6 +96,7 @@ impl Camera {
         Ray::new(self.eye + offset, pinhole * self.focal_distance - offset)
     }
 }
+
 vectorized! {
     fn pinhole_rays(camera: &Camera, at: &[Lane<f32>; 2], size: Vec2, rays: &mut RayBlock) {
         for i in 0..BLOCK {
@@ -116,6 +117,42 @@ vectorized! {
             let ray = camera.through_lens(direction, warp::square_to_disk([lens[0][i], lens[1][i]]));
             set_vec3(&mut rays.origin, i, ray.origin);
             set_vec3(&mut rays.direction, i, ray.direction);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::sampler::Sampler;
+    use crate::math::vectorized::{at_every_level, vec3};
+
+    #[test]
+    fn a_block_of_samples_has_the_rays_of_its_samples() {
+        let size = Vec2::new(640.0, 360.0);
+        let up = DVec3::new(0.1, 1.0, 0.0);
+        let pinhole = Camera::look_at(DVec3::new(1.0, 2.0, 5.0), DVec3::ZERO, up, 0.7);
+        for (aperture_radius, aperture_blades) in [(0.0, 0), (0.1, 0), (0.1, 5)] {
+            let camera = Camera { aperture_radius, aperture_blades, ..pinhole };
+            let (mut at, mut lens) = ([[0.0; BLOCK]; 2], [[0.0; BLOCK]; 2]);
+            for i in 0..BLOCK {
+                let numbers = Sampler::Random { seed: 1 }.numbers(i as u32, 0, 0);
+                let [x, y] = numbers.pair(0);
+                [at[0][i], at[1][i]] = [x * size.x, y * size.y];
+                [lens[0][i], lens[1][i]] = numbers.pair(1);
+            }
+            for (level, rays) in at_every_level(|| {
+                let mut rays = RayBlock::IDLE;
+                camera.rays(&at, size, &lens, &mut rays);
+                rays
+            }) {
+                for i in 0..BLOCK {
+                    let at = Vec2::new(at[0][i], at[1][i]);
+                    let ray = camera.ray(at, size, [lens[0][i], lens[1][i]]);
+                    assert_eq!(vec3(&rays.origin, i), ray.origin, "{level:?}, {camera:?}");
+                    assert_eq!(vec3(&rays.direction, i), ray.direction, "{level:?}, {camera:?}");
+                }
+            }
         }
     }
 }

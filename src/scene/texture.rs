@@ -277,6 +277,22 @@ mod tests {
         }
     }
 
+    /// Without distortion a ring of wood rises by its square up to 0.85, and then falls smoothly, half
+    /// of it half way.
+    #[test]
+    fn a_ring_of_wood_rises_and_falls() {
+        let octaves = Octaves { count: 1, lacunarity: 2.0, gain: 0.5 };
+        let colors = vec![Rgb::ZERO, Rgb::ONE];
+        let noise = Noise { pattern: Pattern::Wood, scale: 2.0, octaves, distortion: 0.0, colors };
+        for (fraction, expected) in
+            [(0.425, 0.25), (0.85, 1.0), (0.8875, 0.843_75), (0.925, 0.5), (0.9625, 0.156_25)]
+        {
+            let radius = 0.5 * (3.0 + fraction);
+            let found = noise.value(DVec3::new(0.6 * radius, 5.0, -0.8 * radius));
+            assert!((found - expected).abs() < 1e-9, "{found}, not {expected} at {fraction}");
+        }
+    }
+
     /// Marble without distortion is 1/2 + 1/2 sin(pi s x), and its slope is known.
     #[test]
     fn the_slope_of_marble_is_that_of_its_formula() {

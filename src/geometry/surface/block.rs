@@ -409,14 +409,17 @@ mod tests {
                 for (i, (place, hit)) in part.iter().enumerate() {
                     block.set(i, &rays, *place, *hit);
                 }
-                for (level, found) in at_every_level(|| {
+                let at = |needs_uv| {
                     let mut surfaces = SurfaceBlock::EMPTY;
-                    geometry.surfaces(0, &block, false, &mut surfaces);
+                    geometry.surfaces(0, &block, needs_uv, &mut surfaces);
                     surfaces
-                }) {
+                };
+                for (level, [found, with_uv]) in at_every_level(|| [false, true].map(at)) {
                     for (i, (place, hit)) in part.iter().enumerate() {
                         let one = geometry.surface(&rays.ray(*place), *hit);
                         let of_block = found.surface(i);
+                        let rest = Surface { slot: one.slot, ..with_uv.surface(i) };
+                        assert_eq!(format!("{rest:?}"), format!("{one:?}"), "{level:?}, {name}");
                         let figures = |s: &Surface| {
                             (s.point, s.normal, s.object_point, s.object_normal, s.clearance)
                         };

@@ -83,3 +83,39 @@ impl Triangles {
 fn double_area([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::geometry::{Shape, TracedMesh};
+    use crate::math::Transform;
+
+    /// Moments of points uniform in a triangle: with its corners as a + x and a + y, means of a third,
+    /// mean squares of a sixth, mean products of a twelfth.
+    #[test]
+    fn triangles_are_sampled_uniformly() {
+        let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+        let mesh = Mesh { positions, triangles: vec![[0, 1, 2]], ..Mesh::default() };
+        let mesh = Arc::new(TracedMesh::new(mesh));
+        let instance = Instance::new(Shape::Mesh(Arc::clone(&mesh)), Transform::IDENTITY);
+        let triangles = Triangles::new(&instance, &mesh.mesh, |_| 1.0).unwrap();
+        let (from, n) = (Vec3::new(0.2, 0.3, 2.0), 200_u16);
+        let mut moments = [0.0_f64; 5];
+        for i in 0..n {
+            for j in 0..n {
+                let u = [i, j].map(|k| (f32::from(k) + 0.5) / f32::from(n));
+                let (target, _) = triangles.sample(from, 0.5, u).unwrap();
+                let p = (from + target.reach).as_dvec3();
+                let terms = [p.x, p.y, p.x * p.x, p.y * p.y, p.x * p.y];
+                moments.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+            }
+        }
+        let means = moments.map(|sum| sum / f64::from(n).powi(2));
+        let expected = [1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0, 1.0 / 12.0];
+        for (found, expected) in means.into_iter().zip(expected) {
+            assert!((found / expected - 1.0).abs() < 2e-3, "{found}, not {expected}");
+        }
+    }
+}

@@ -307,12 +307,12 @@ mod tests {
                         set_vec3(&mut rays.direction, i, one.direction);
                     }
                 }
-                for (level, (t, pdf)) in at_every_level(|| {
+                for (level, (t, pdf, normal)) in at_every_level(|| {
                     let (mut pdf, mut normal) = ([0.0; BLOCK], NO_LANES);
                     let mut met = [f32::NAN; BLOCK];
                     light.intersect_block(&rays, &mut met);
                     light.pdf_block(&rays, &met, &mut pdf, &mut normal);
-                    (met, pdf)
+                    (met, pdf, normal)
                 }) {
                     for i in 0..BLOCK {
                         let (from, to) = (vec3(&rays.origin, i), vec3(&rays.direction, i));
@@ -320,6 +320,8 @@ mod tests {
                         assert_eq!((t[i] > 0.0).then_some(t[i]), one, "{level:?}, {emitter:?}");
                         if one.is_some() {
                             assert_eq!(pdf[i], light.pdf(from, to, t[i]), "{level:?}, {emitter:?}");
+                            let there = light.normal_at(from + to * t[i]).unwrap_or(Vec3::ZERO);
+                            assert_eq!(vec3(&normal, i), there, "{level:?}, {emitter:?}");
                         }
                     }
                 }

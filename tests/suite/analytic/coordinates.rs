@@ -101,7 +101,8 @@ fn uv_gradients_are_the_slopes_of_uv_on_every_shape() {
     }
 }
 
-/// The contract's formulas of sphere and plane; of cone and cylinder the whole turn and the height.
+/// The contract's formulas of sphere and plane; of cone and cylinder the whole turn and the height; of
+/// meshes what their corners say.
 #[test]
 fn uv_has_the_value_of_its_formula() {
     let mut numbers = Numbers::new(9);
@@ -132,7 +133,19 @@ fn uv_has_the_value_of_its_formula() {
                     let v = if is_cap { across.length() / *radius } else { height };
                     DVec2::new(0.5 + across.dot(w.cross(x)).atan2(across.dot(x)) / TAU, v)
                 }
-                Shape::Box { .. } | Shape::Mesh(_) => continue,
+                // u and v are linear on a triangle: by its corners, and the way from the first to the others.
+                Shape::Mesh(mesh) => {
+                    let mesh = &mesh.mesh;
+                    let triangle = found.source.primitive;
+                    let [a, b, c] = mesh.corners(triangle).map(|corner| corner.as_dvec3());
+                    let area = (b - a).cross(c - a);
+                    let share = |v: DVec3| v.dot(area) / area.length_squared();
+                    let (s, t) = (share((p - a).cross(c - a)), share((b - a).cross(p - a)));
+                    let [ua, ub, uc] =
+                        mesh.uv_ids[triangle as usize].map(|id| mesh.uvs[id as usize].as_dvec2());
+                    ua + (ub - ua) * s + (uc - ua) * t
+                }
+                Shape::Box { .. } => continue,
             };
             let error = (found.uv.as_dvec2() - expected).length();
             assert!(error < 1e-5, "{name}: {}, not {expected} at {p}", found.uv);

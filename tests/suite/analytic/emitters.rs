@@ -8,7 +8,7 @@ use penumbra::geometry::mesh::Mesh;
 use penumbra::scene::image::Image;
 
 use crate::common::{
-    Files, Look, WHITE_FLOOR, assert_close, film, job_with, lambert_polygon, mean,
+    Files, Look, WHITE_FLOOR, assert_close, film, job, job_with, lambert_polygon, mean,
 };
 
 const ONE_EVENT: &str = "integrator = 'path'\nmax_depth = 1";
@@ -216,4 +216,56 @@ fn many_lights_add_up() {
             assert_close(together[channel], apart[channel], 6e-3, &what);
         }
     }
+}
+
+/// Of more lights than eight only those that may bring something are asked, each with its chance:
+/// beside dark ones a light is asked every time, and every pixel is the same to the last bit as when
+/// it is alone, though it is found by other ways. A wall stands close behind those that face the floor.
+#[test]
+fn dark_lights_change_nothing() {
+    let wall = "[[objects]]\ntype = 'plane'\npoint = [1.01, 2.02, 0.505]\nnormal = [2, 4, 1]\n";
+    let lights = [
+        ("type = 'rectangle'\nposition = [1, 2, 0.5]\nsize = [2, 1]", wall),
+        ("type = 'disk'\nposition = [1, 2, 0.5]\nsize = 1.5", wall),
+        ("type = 'sphere'\nposition = [1, 2, 0.5]\nsize = 1.5", ""),
+        ("type = 'sun'\nposition = [1, 2, 0.5]\nsize = 30", ""),
+        ("type = 'point'\nposition = [1, 2, 0.5]", wall),
+        ("type = 'disk'\nposition = [1, 2, 0.5]", wall),
+    ];
+    let dark = "[[lights]]\ntype = 'rectangle'\nposition = [0, 3, 0]\nsize = 1\npower = [0, 0, 0]\n\
+                visible = false\n";
+    for form in ["original", "duer", "bounded"] {
+        for (light, wall) in lights {
+            let body = format!(
+                "[render]\nwidth = 12\nheight = 9\n[camera]\neye = [-1.5, 1, 0.4]\n\
+                 target = [0, 0, 0]\n[[materials]]\nname = 'm'\ndiffuse = [0.5, 0.4, 0.3]\n\
+                 specular = [0.3, 0.4, 0.5]\nward = '{form}'\nalpha_x = 0.1\nalpha_y = 0.3\n\
+                 [[objects]]\ntype = 'plane'\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\n\
+                 material = 'm'\n[[objects]]\ntype = 'sphere'\ncenter = [0.2, 0.3, 0.1]\n\
+                 radius = 0.3\nmaterial = 'm'\n{wall}\
+                 [[lights]]\n{light}\npower = [9, 8, 7]\nvisible = false\n"
+            );
+            let picture = |text: &str| film(&job(text), 16).picture();
+            let (alone, among) = (picture(&body), picture(&format!("{body}{}", dark.repeat(8))));
+            assert!(alone == among, "{form}: {light}");
+        }
+    }
+}
+
+/// Where a scattered ray finds the light with about the density of a ray that looks for it, both count
+/// by half: a density told wrong by some percent would show. A ball that fills half of the sky's
+/// weight, and a sky that is bright in two quadrants of four.
+#[test]
+fn both_ways_to_the_light_share_it() {
+    let look = Look::at(ASIDE, [0.0; 3]).with(ONE_EVENT).samples(8192);
+    let floor = "[[materials]]\nname = 'm'\ndiffuse = [0.8, 0.8, 0.8]\n[[objects]]\ntype = 'plane'\n\
+                 point = [0, 0, 0]\nnormal = [0, 1, 0]\nmaterial = 'm'\n";
+    let ball = "[[objects]]\ntype = 'sphere'\ncenter = [0, 2, 0]\nradius = 1.7320508\n\
+                material = 'glow'\n";
+    let found = radiance(&look, &format!("{GLOW}{floor}{ball}"));
+    assert_close(found.x, 0.8 * 3.0 * 0.75, 3e-3, "a ball");
+    let sky = "[environment]\nbackground = 'sky'\n[[textures]]\nname = 'sky'\ntype = 'checker'\n\
+               scale = 1\ncolors = [[0, 0, 0], [2, 2, 2]]\n";
+    let found = radiance(&look, &format!("{sky}{floor}"));
+    assert_close(found.x, 0.8 * 2.0 * 0.5, 3e-3, "a sky");
 }

@@ -139,3 +139,13 @@ fn blades_have_a_corner_towards_up() {
         assert!(width_at(0.9) < 0.4 * width_at(-0.4), "the corner is narrow, the side wide");
     }
 }
+
+/// Where no focal distance is given, the target is in focus.
+#[test]
+fn the_target_is_in_focus_where_nothing_else_is_said() {
+    let look = "[render]\nwidth = 8\nheight = 8\n[camera]\neye = [1, 2, 3]\ntarget = [-1, 4, -4]\n";
+    let of = |rest: &str| job(&format!("{look}{rest}")).scene.camera.focal_distance;
+    let expected = (4.0_f32 + 4.0 + 49.0).sqrt();
+    assert!((of("") - expected).abs() < 1e-5, "{} for {expected}", of(""));
+    assert_eq!(of("focal_distance = 2.5\n"), 2.5);
+}

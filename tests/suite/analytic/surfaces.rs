@@ -348,6 +348,12 @@ fn checkers_count_cells_by_floor() {
         let expected = colors[(x + y + z).rem_euclid(2) as usize];
         assert_eq!(texture.eval(&lookup), expected, "cell ({x}, {y}, {z})");
     }
+    // A thousandth of a cell on either side of a far border.
+    for (x, color) in [(8.999, colors[0]), (9.001, colors[1])] {
+        let point = DVec3::new(x / 2.0, 0.1, 0.1);
+        let lookup = Lookup { point, uv: glam::Vec2::ZERO, uv_gradients: [Vec3::ZERO; 2] };
+        assert_eq!(texture.eval(&lookup), color, "{x} cells along");
+    }
 }
 
 /// Right-handed, about fixed axes, X then Y then Z, after the scale.
