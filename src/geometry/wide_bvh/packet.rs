@@ -49,7 +49,7 @@ pub(super) fn blocked<I: Isa>(
 #[inline(always)]
 fn trace<I: Isa, T: Take>(bvh: &WideBvh, rays: &RayBatch, fleet: &mut Fleet, hits: &mut T) {
     let mut packet = Packet::<I>::idle();
-    let mut sharing = Sharing::new(bvh.blocks.len());
+    let mut sharing = Sharing::new::<T>(bvh.blocks.len());
     fleet.clear();
     let mut first = 0;
     while first < rays.len() {

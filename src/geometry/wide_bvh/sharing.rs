@@ -3,6 +3,7 @@
 use crate::geometry::lanes::{Isa, Lanes};
 use crate::geometry::wide_bvh::group::{LANES, lanes};
 use crate::geometry::wide_bvh::packet::GROUPS;
+use crate::geometry::wide_bvh::stream::Take;
 use crate::math::RayBatch;
 
 /// Fewer rays that are alike are not worth a packet that stays together.
@@ -31,15 +32,13 @@ impl Sharing {
     /// For a tree of so many blocks. The finer the mesh, the sooner rays part, and the less of the
     /// tree stays in the cache of the processor, which packets do not wait for with other rays under
     /// way. All figures were found by trial.
-    pub(super) fn new(n_blocks: usize) -> Self {
+    pub(super) fn new<T: Take>(n_blocks: usize) -> Self {
+        /// Larger trees are too far from the processor.
+        const MOST_BLOCKS: usize = 150_000;
         let root = (n_blocks as f32).sqrt();
         let spread = (152.0 / (root * root.sqrt())).clamp(0.05, 0.7);
-        let n_alone = match n_blocks {
-            0..10_000 => 3,
-            10_000..40_000 => 4,
-            40_000..150_000 => 8,
-            _ => LANES,
-        };
+        let few = if T::SORTED { 4 } else { 8 };
+        let n_alone = if n_blocks < MOST_BLOCKS { few } else { LANES };
         Self { spread, n_alone, parted: 0, are_runs: false }
     }
 
