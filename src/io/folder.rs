@@ -83,6 +83,23 @@ impl Folder {
         }
     }
 
+    /// The one folder to name in a new snapshot: of a snapshot's, the one it records, or that of
+    /// the PNG where its files lie there and not in the other.
+    pub fn home(&self) -> Self {
+        let Self::Snapshot { recorded, beside, files } = self else { return self.clone() };
+        let beside = Self::Disk(beside.clone());
+        let has_all = |place: &Self| {
+            files.iter().all(|record| {
+                let path = place.disk_path(&record.file);
+                path.is_none_or(|path| path.metadata().is_ok_and(|it| it.len() == record.size))
+            })
+        };
+        match recorded.as_deref() {
+            Some(recorded) if has_all(recorded) || !has_all(&beside) => recorded.clone(),
+            Some(_) | None => beside,
+        }
+    }
+
     /// Where a file named relative to this folder is on disk, for watching it.
     pub fn disk_path(&self, file: &str) -> Option<PathBuf> {
         match self {
@@ -131,4 +148,36 @@ fn normalised(path: &Path) -> String {
         }
     }
     parts.join("/")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A snapshot made of a snapshot names the folder in which the files lie.
+    #[test]
+    fn a_new_snapshot_names_the_folder_that_has_the_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let [scene, pictures] = ["scene", "pictures"].map(|name| folder.path().join(name));
+        let of = |recorded: Option<&Path>| Folder::Snapshot {
+            recorded: recorded.map(|path| Box::new(Folder::Disk(path.to_owned()))),
+            beside: pictures.clone(),
+            files: vec![FileRecord::of("a.obj", b"12345")],
+        };
+        let put = |place: &Path, bytes: &[u8]| {
+            std::fs::create_dir_all(place).unwrap();
+            std::fs::write(place.join("a.obj"), bytes).unwrap();
+        };
+        put(&scene, b"12345");
+        let home = |recorded: Option<&Path>| of(recorded).home();
+        assert_eq!(home(Some(&scene)), Folder::Disk(scene.clone()), "not where they are");
+        assert_eq!(home(None), Folder::Disk(pictures.clone()), "there is one place only");
+        put(&pictures, b"12345");
+        assert_eq!(home(Some(&scene)), Folder::Disk(scene.clone()), "both have them");
+        put(&scene, b"changed");
+        assert_eq!(home(Some(&scene)), Folder::Disk(pictures.clone()), "one has another file");
+        put(&pictures, b"changed");
+        assert_eq!(home(Some(&scene)), Folder::Disk(scene.clone()), "neither has it");
+        assert_eq!(Folder::Gallery.home(), Folder::Gallery, "a folder is its own home");
+    }
 }

@@ -99,14 +99,10 @@ pub fn texts(
     description.render.width = width;
     description.render.height = height;
     description.render.samples = samples;
-    let folder = match folder {
-        Some(Folder::Disk(path)) => {
-            Some(RecordedFolder::Path(std::path::absolute(path).unwrap_or(path.clone())))
-        }
-        Some(Folder::Gallery) => Some(RecordedFolder::Gallery),
-        Some(Folder::Snapshot { beside, .. }) => Some(RecordedFolder::Path(beside.clone())),
-        None => None,
-    };
+    let folder = folder.map(|folder| match folder.home() {
+        Folder::Disk(path) => RecordedFolder::Path(std::path::absolute(&path).unwrap_or(path)),
+        Folder::Gallery | Folder::Snapshot { .. } => RecordedFolder::Gallery,
+    });
     let record = RenderRecord {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         samples,

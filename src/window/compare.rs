@@ -1,5 +1,6 @@
 //! Compare: a pinned picture beside the live one, with a split to drag, and what differs.
 
+use super::figures::significant;
 use crate::io::scene_file::{self, ParameterPath};
 use crate::scene::description::SceneDescription;
 use egui::{Align2, Color32, ColorImage, Pos2, Rect, Sense, Stroke, TextureHandle, Ui, pos2};
@@ -174,18 +175,33 @@ fn differences(then: &SceneDescription, now: &SceneDescription) -> Vec<Differenc
         let before = find(&then, &path);
         let line = match &before {
             Some(before) if *before == value => continue,
-            Some(before) => format!("{path}: {before}, now {value}"),
-            None => format!("{path}: new, {value}"),
+            Some(before) => format!("{path}: {}, now {}", shown(before), shown(&value)),
+            None => format!("{path}: new, {}", shown(&value)),
         };
         differences.push(Difference { path, then: before, line });
     }
     for (path, value) in then {
         if find(&now, &path).is_none() {
-            let line = format!("{path}: gone, was {value}");
+            let line = format!("{path}: gone, was {}", shown(&value));
             differences.push(Difference { path, then: Some(value), line });
         }
     }
     differences
+}
+
+/// A value as a person reads it: figures short, what is the same on each axis once.
+fn shown(value: &Value) -> String {
+    match value {
+        Value::Float(figure) => significant(*figure, 5),
+        Value::String(text) => text.clone(),
+        Value::Array(parts) => match parts.split_first() {
+            Some((first, rest)) if rest.iter().all(|part| part == first) => shown(first),
+            _ => parts.iter().map(shown).collect::<Vec<_>>().join(" "),
+        },
+        Value::Integer(_) | Value::Boolean(_) | Value::Datetime(_) | Value::Table(_) => {
+            value.to_string()
+        }
+    }
 }
 
 #[cfg(test)]
@@ -204,9 +220,18 @@ mod tests {
         let lines: Vec<&str> = found.iter().map(|difference| difference.line.as_str()).collect();
         assert_eq!(
             lines,
-            ["camera.vertical_fov: 40.0, now 55.0", "materials.glaze.alpha_x: 0.15, now 0.5"],
+            ["camera.vertical_fov: 40, now 55", "materials.glaze.alpha_x: 0.15, now 0.5"],
             "other lines"
         );
+    }
+
+    #[test]
+    fn values_read_as_people_write_them() {
+        let text = |value: &str| shown(&toml::from_str::<toml::Table>(value).unwrap()["v"]);
+        assert_eq!(text("v = 525.5200000000001"), "525.52", "too many digits");
+        assert_eq!(text("v = [5000.0, 5000.0, 5000.0]"), "5000", "the same thrice");
+        assert_eq!(text("v = [0.0, 1.5, 0.25]"), "0 1.5 0.25", "three axes");
+        assert_eq!(text("v = \"glaze\""), "glaze", "a name");
     }
 
     #[test]
@@ -217,7 +242,7 @@ mod tests {
         now.lights[0].name = "rim".to_owned();
         let found = differences(&then, &now);
         let says = |text: &str| found.iter().any(|difference| difference.line == text);
-        assert!(says("camera.focal_distance: gone, was 4.0"), "{found:?}");
+        assert!(says("camera.focal_distance: gone, was 4"), "{found:?}");
         assert!(says("lights.rim.visible: new, true"), "{found:?}");
         assert!(says("lights.key.visible: gone, was true"), "{found:?}");
     }

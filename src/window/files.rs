@@ -30,6 +30,8 @@ pub(super) struct FileWork {
     pub(super) is_completing: bool,
     /// Whether what is being loaded is the open scene again, changed by another program.
     pub(super) is_reloading: bool,
+    /// What was said of a changed file that could not be loaded; it settles itself.
+    pub(super) reload_fault: Option<String>,
     /// What an edited scene lacked when it was last looked at.
     pub(super) missing: Option<ResolveError>,
     /// Whether a scene has been opened at all.
@@ -90,6 +92,7 @@ impl FileWork {
             source: None,
             is_completing: false,
             is_reloading: false,
+            reload_fault: None,
             missing: None,
             has_scene: false,
             is_saving_first: false,

@@ -14,6 +14,8 @@ pub(super) struct Gesture {
     /// A button was let go: the last edit of its drag comes in the same frame, the next motion
     /// begins after it.
     released: bool,
+    /// It began while a menu was open: its click closes that and does nothing else.
+    closes_menu: bool,
 }
 
 impl Gesture {
@@ -42,8 +44,14 @@ impl Gesture {
             self.last_scroll = time;
         }
         if begins || scroll_begins {
+            self.closes_menu = egui::Popup::is_any_open(ctx);
             self.next();
         }
+    }
+
+    /// Whether a click of this motion only closes an open menu.
+    pub(super) fn closes_menu(&self) -> bool {
+        self.closes_menu
     }
 
     /// Ends the motion: what follows is a step of its own.

@@ -1,9 +1,9 @@
 //! Lights in the picture: a mark for each, which selects and moves it.
 
 use super::theme;
-use crate::scene::description::{LightKind, SceneDescription};
+use crate::scene::description::{LightDescription, LightKind, SceneDescription};
 use crate::scene::orbit;
-use egui::{Color32, Rect, Sense, Stroke, Ui, Vec2};
+use egui::{Color32, Id, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2};
 
 /// Size of what can be grabbed, in points.
 const GRIP: f32 = 18.0;
@@ -17,7 +17,6 @@ pub(super) fn lights_in_picture(
     selected: &mut usize,
 ) {
     let (width, height) = (f64::from(picture.width()), f64::from(picture.height()));
-    let accent = theme::accent(ui.visuals());
     let camera = scene.camera.clone();
     for (index, light) in scene.lights.iter_mut().enumerate() {
         if light.kind == LightKind::Sun {
@@ -29,6 +28,10 @@ pub(super) fn lights_in_picture(
         let at = picture.min + Vec2::new(x as f32, y as f32);
         let grip = Rect::from_center_size(at, Vec2::splat(GRIP));
         if !clip.contains_rect(grip) {
+            let id = ui.scope_id().with(("light beyond", index));
+            if pointer_ui(ui, clip, at, id, light, index == *selected) {
+                *selected = index;
+            }
             continue;
         }
         let id = ui.scope_id().with(("light", index));
@@ -50,8 +53,7 @@ pub(super) fn lights_in_picture(
                 light.position[axis] += step[axis];
             }
         }
-        let color = if index == *selected { accent } else { Color32::WHITE };
-        let faded = if light.enabled { color } else { color.gamma_multiply(0.4) };
+        let faded = mark_color(light, index == *selected);
         let painter = ui.painter_at(clip);
         painter.circle_stroke(at, 6.0, Stroke::new(3.5, Color32::from_black_alpha(130)));
         painter.circle_stroke(at, 6.0, Stroke::new(1.5, faded));
@@ -63,4 +65,36 @@ pub(super) fn lights_in_picture(
         }
         response.on_hover_text(format!("{}: drag to move", light.name));
     }
+}
+
+fn mark_color(light: &LightDescription, is_selected: bool) -> Color32 {
+    let color = if is_selected { theme::ACCENT_ON_PICTURE } else { Color32::WHITE };
+    if light.enabled { color } else { color.gamma_multiply(0.4) }
+}
+
+/// A mark at the edge of the picture for a light beyond it; gives back whether it was clicked.
+fn pointer_ui(
+    ui: &Ui,
+    clip: Rect,
+    light_at: Pos2,
+    id: Id,
+    light: &LightDescription,
+    is_selected: bool,
+) -> bool {
+    let inside = clip.shrink(GRIP);
+    let direction = (light_at - inside.center()).normalized();
+    let at = light_at.clamp(inside.min, inside.max);
+    let response = ui.interact(Rect::from_center_size(at, Vec2::splat(GRIP)), id, Sense::click());
+    let name = format!("Light {} beyond the picture", light.name);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    let painter = ui.painter_at(clip);
+    for (size, color) in
+        [(9.0, Color32::from_black_alpha(150)), (7.0, mark_color(light, is_selected))]
+    {
+        let corner = |turn: f32| at + Vec2::angled(direction.angle() + turn) * size;
+        let corners = vec![corner(0.0), corner(2.4), corner(-2.4)];
+        painter.add(Shape::convex_polygon(corners, color, Stroke::NONE));
+    }
+    let told = format!("{}: beyond the picture this way", light.name);
+    response.on_hover_text(told).clicked()
 }

@@ -31,7 +31,10 @@ impl App {
             Some(Err(failure)) => {
                 self.files.loading = None;
                 self.files.is_completing = false;
-                self.files.is_reloading = false;
+                if std::mem::take(&mut self.files.is_reloading) {
+                    self.toasts.settle(&mut self.files.reload_fault);
+                    self.files.reload_fault = Some(failure.to_string());
+                }
                 self.toasts.fail(failure.to_string());
             }
         }
@@ -44,6 +47,7 @@ impl App {
                     if *description == self.document.description {
                         self.document.mark_saved(&path);
                     }
+                    self.files.source = Some(Source::File(path.clone()));
                     self.files.scene_path = Some(path);
                     self.watch_files();
                     self.go_on(ctx);
@@ -141,14 +145,15 @@ impl App {
         let Loaded { source, folder, description, assets, files, report, snapshot: _ } = loaded;
         self.files.loading = None;
         self.files.has_scene = true;
-        self.files.title = source.stem();
+        let is_copy = self.recovery.is_copy(&source);
+        self.files.title = if is_copy { "restored".to_owned() } else { source.stem() };
         self.files.folder = folder;
         self.files.source = Some(source.clone());
         self.files.missing = None;
         self.files.records = files;
         self.files.scene_path = None;
         if let Source::File(path) = &source
-            && !self.recovery.is_copy(&source)
+            && !is_copy
         {
             self.interface.remember_file(path.clone());
             if path.extension().is_some_and(|ending| ending == "toml") {
@@ -213,12 +218,14 @@ impl App {
     fn take_reloaded(&mut self, loaded: Loaded) {
         self.files.loading = None;
         self.files.is_reloading = false;
+        self.toasts.settle(&mut self.files.reload_fault);
         let mut description = loaded.description;
         let file_camera = description.camera.clone();
         if file_camera == self.home_camera {
             description.camera = self.document.description.camera.clone();
         }
         self.home_camera = file_camera;
+        self.files.folder = loaded.folder;
         self.files.records = loaded.files;
         self.files.report = loaded.report;
         self.work.set_assets(Arc::new(loaded.assets));
@@ -242,6 +249,8 @@ impl App {
     /// Watches the files of the open scene, as they are now.
     fn watch_files(&self) {
         let scene = match &self.files.source {
+            // The copy for a crash is written by this window itself.
+            Some(source) if self.recovery.is_copy(source) => None,
             Some(Source::File(path)) => Some(path.clone()),
             Some(Source::Gallery(_)) | None => None,
         };

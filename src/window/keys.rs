@@ -79,6 +79,11 @@ impl Action {
         }
         name
     }
+
+    /// Whether a key that is held does it again and again.
+    fn repeats(self) -> bool {
+        matches!(self, Self::Brighter | Self::Darker | Self::Undo | Self::Redo)
+    }
 }
 
 /// A key with its modifiers, and what it does.
@@ -171,9 +176,11 @@ impl Default for Keys {
 impl Keys {
     /// The actions whose keys were pressed, taken out of the input. Keys alone do nothing while a
     /// field has the focus; with Ctrl they do, but for those that text fields use themselves. While
-    /// the camera is `flying`, letters belong to it.
+    /// the camera is `flying`, letters belong to it; Escape belongs to an open menu. A key that is
+    /// held does its action once, but for those that step.
     pub(super) fn pressed(&self, ctx: &egui::Context, flying: bool) -> Vec<Action> {
         let typing = ctx.memory(|memory| memory.focused().is_some());
+        let in_menu = egui::Popup::is_any_open(ctx);
         let mut actions = Vec::new();
         ctx.input_mut(|input| {
             // Those with more modifiers first: Ctrl+Shift+Z is not Ctrl+Z.
@@ -188,6 +195,12 @@ impl Keys {
                 }
                 if flying && !binding.modifiers.command {
                     continue;
+                }
+                if in_menu && binding.action == Action::Cancel {
+                    continue;
+                }
+                if !binding.action.repeats() {
+                    input.events.retain(|event| !is_repeat(event, binding));
                 }
                 if is_system_copy(binding) {
                     // The system's copy arrives as an event of its own, without a key.
@@ -241,6 +254,12 @@ impl Keys {
 fn is_system_copy(binding: &Binding) -> bool {
     let Modifiers { shift, command, alt, .. } = binding.modifiers;
     binding.key == Key::C && command && !shift && !alt
+}
+
+/// Whether a held key sent this event.
+fn is_repeat(event: &egui::Event, binding: &Binding) -> bool {
+    matches!(event, egui::Event::Key { key, modifiers, pressed: true, repeat: true, .. }
+        if *key == binding.key && modifiers.matches_logically(binding.modifiers))
 }
 
 /// The keys of one binding as a person reads them.

@@ -137,7 +137,8 @@ struct Entry {
 
 fn entry(name: &str, value: &Spanned<DeValue<'_>>) -> Result<Entry, String> {
     let Some(usual) = BINDINGS.iter().find(|usual| usual.action.name() == name) else {
-        let names: Vec<String> = BINDINGS.iter().map(|usual| usual.action.name()).collect();
+        let mut names: Vec<String> = BINDINGS.iter().map(|usual| usual.action.name()).collect();
+        names.dedup();
         let hint = suggestion(name, names.iter().map(String::as_str), str::to_owned);
         return Err(format!("there is no action {name:?}{hint}"));
     };
@@ -248,6 +249,11 @@ mod tests {
             let shown = keys.shown(Action::Save);
             assert_eq!(shown, keys_of_default(Action::Save), "{text} changes another key");
         }
+        let (_, complaints) = read("nonsense = \"K\"");
+        assert!(
+            complaints.concat().contains("undo, redo, compare"),
+            "not once each: {complaints:?}"
+        );
         let (keys, _) = read("pause = \"Banana\"");
         assert_eq!(
             keys.shown(Action::Pause),

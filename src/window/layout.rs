@@ -181,7 +181,7 @@ impl App {
             &mut self.interface.display,
             self.interface.picking,
         );
-        if let Some(click) = output.click {
+        if let Some(click) = output.click.filter(|_| !self.gesture.closes_menu()) {
             let (x, y) = click.at();
             self.work.session.pick(x, y);
             self.awaited_click = Some(click);

@@ -5,8 +5,8 @@ use super::theme;
 use crate::io::gallery::{self, GALLERY, PICTURE_SIZE};
 use crate::io::snapshot::read_pixels;
 use egui::{
-    Align2, Button, Color32, ColorImage, CursorIcon, Rect, RichText, Sense, Stroke, StrokeKind,
-    TextStyle, TextureHandle, TextureOptions, Ui, Vec2, pos2,
+    Align2, Button, Color32, ColorImage, CursorIcon, Id, LayerId, Order, Rect, RichText, Sense,
+    Stroke, StrokeKind, TextStyle, TextureHandle, TextureOptions, Ui, Vec2, pos2,
 };
 use std::path::PathBuf;
 
@@ -156,6 +156,24 @@ fn drop_zone(ui: &mut Ui) {
     ui.painter().extend(egui::Shape::dashed_line(&corners, stroke, 6.0, 5.0));
     let font = TextStyle::Body.resolve(ui.style());
     ui.painter().text(rect.center(), Align2::CENTER_CENTER, told, font, color);
+}
+
+/// Says over the picture that a file held there would be opened.
+pub(super) fn drop_hint(ctx: &egui::Context, over: Rect) {
+    if ctx.input(|input| input.raw.hovered_files.is_empty()) {
+        return;
+    }
+    let shade = LayerId::new(Order::Foreground, Id::unique("drop shade"));
+    let painter = ctx.layer_painter(shade).with_clip_rect(over);
+    painter.rect_filled(over, 0.0, Color32::from_black_alpha(150));
+    let edge = Stroke::new(2.0, theme::ACCENT_ON_PICTURE);
+    painter.rect_stroke(over.shrink(12.0), 8.0, edge, StrokeKind::Inside);
+    egui::Area::new(Id::unique("drop hint"))
+        .order(Order::Tooltip)
+        .interactable(false)
+        .pivot(Align2::CENTER_CENTER)
+        .fixed_pos(over.center())
+        .show(ctx, |ui| ui.label(RichText::new("Drop to open").heading().color(Color32::WHITE)));
 }
 
 /// A line for a file opened before; gives back whether it was clicked.

@@ -21,7 +21,7 @@ pub(super) struct InterfaceState {
     pub(super) selection: Selection,
     /// Zoom of the picture.
     pub(super) display: DisplayState,
-    /// Whether the picture follows the window's size.
+    /// How large the picture is.
     pub(super) size_mode: SizeMode,
     /// Index in the list of accelerators.
     pub(super) accelerator: usize,
@@ -97,7 +97,7 @@ impl Default for InterfaceState {
 #[serde(default)]
 pub(super) struct Remembered {
     panel_shown: bool,
-    fixed_size: bool,
+    size: SizeMode,
     scene_unit_mm: f64,
     recent: Vec<PathBuf>,
     export: ExportSettings,
@@ -117,7 +117,7 @@ impl Remembered {
     pub(super) fn of(state: &InterfaceState) -> Self {
         Self {
             panel_shown: state.panel_shown,
-            fixed_size: state.size_mode == SizeMode::Fixed,
+            size: state.size_mode,
             scene_unit_mm: state.scene_unit_mm,
             // A name that is no text cannot be written down.
             recent: state.recent.iter().filter(|path| path.to_str().is_some()).cloned().collect(),
@@ -132,7 +132,7 @@ impl Remembered {
     pub(super) fn restore(self) -> InterfaceState {
         InterfaceState {
             panel_shown: self.panel_shown,
-            size_mode: if self.fixed_size { SizeMode::Fixed } else { SizeMode::Window },
+            size_mode: self.size,
             scene_unit_mm: self.scene_unit_mm,
             recent: self.recent,
             export: self.export,

@@ -43,7 +43,7 @@ pub(super) fn add(scene: &mut SceneDescription, part: Part, place: Triple, reach
         Part::Object => {
             let name = free_name(scene, part, "object");
             let mut object = ObjectDescription::new(name, ObjectKind::Sphere);
-            complete(&mut object, reach * 0.12);
+            complete(&mut object, round(reach * 0.12));
             object.translate = place;
             scene.objects.push(object);
         }
@@ -215,18 +215,24 @@ fn for_each_texture_name(scene: &mut SceneDescription, mut edit: impl FnMut(&mut
 
 /// A soft rectangle above and to the side of what is looked at, bright enough for that distance.
 fn new_light(name: String, place: Triple, reach: f64) -> LightDescription {
-    let power = 8.0 * reach * reach;
+    let power = round(8.0 * reach * reach);
+    let away = |axis: usize, share: f64| place[axis] + round(share * reach);
     LightDescription {
         name,
         kind: LightKind::Rectangle,
-        position: [place[0] + 0.5 * reach, place[1] + 0.8 * reach, place[2] + 0.5 * reach],
+        position: [away(0, 0.5), away(1, 0.8), away(2, 0.5)],
         target: place,
         up: [0.0, 1.0, 0.0],
-        size: OneOrTwo::One(0.3 * reach),
+        size: OneOrTwo::One(round(0.3 * reach)),
         power: [power; 3],
         visible: true,
         enabled: true,
     }
+}
+
+/// A figure that a person would have typed: two digits that count.
+fn round(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
 }
 
 fn new_texture(name: String) -> TextureDescription {
@@ -307,6 +313,17 @@ mod tests {
         let grey = ColorOrTexture::Color([0.5; 3]);
         assert_eq!(scene.environment.background, grey, "background names a lost texture");
         assert_eq!(scene.objects[0].material, None, "object names a lost material");
+    }
+
+    #[test]
+    fn what_is_added_has_figures_that_a_person_would_type() {
+        let mut scene = scene();
+        add(&mut scene, Part::Light, [0.0; 3], 8.104936767180853);
+        add(&mut scene, Part::Object, [0.0; 3], 8.104936767180853);
+        let light = &scene.lights[0];
+        assert_eq!((light.position, light.power), ([4.1, 6.5, 4.1], [530.0; 3]), "long figures");
+        assert_eq!(light.size, OneOrTwo::One(2.4), "a long size");
+        assert_eq!(scene.objects[1].radius, Some(0.97), "a long radius");
     }
 
     #[test]

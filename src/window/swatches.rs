@@ -17,8 +17,8 @@ use crate::tone_mapping::map_to_srgb8;
 use egui::{Color32, ColorImage, TextureHandle, TextureOptions, Ui, Vec2};
 use glam::{DVec3, Vec2 as Uv, Vec3};
 use std::io;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Weak};
 
 /// Pixels along the side of the ball's picture.
 const BALL_PX: u32 = 112;
@@ -51,7 +51,8 @@ struct PatchKey {
 struct Swatch<Key> {
     name: &'static str,
     thread: Background<(Key, Arc<Assets>), Option<ColorImage>>,
-    asked: Option<Key>,
+    /// What the picture asked for last is of, and with which files.
+    asked: Option<(Key, Weak<Assets>)>,
     shown: Option<TextureHandle>,
 }
 
@@ -104,6 +105,15 @@ impl Swatches {
     }
 }
 
+#[cfg(test)]
+impl Swatches {
+    /// Whether the ball was last asked for with these files.
+    pub(super) fn ball_is_of(&self, assets: &Arc<Assets>) -> bool {
+        let asked = self.ball.asked.as_ref();
+        asked.is_some_and(|(_, of)| Weak::ptr_eq(of, &Arc::downgrade(assets)))
+    }
+}
+
 impl<Key: Clone + PartialEq + Send + 'static> Swatch<Key> {
     fn new(
         name: &'static str,
@@ -116,8 +126,10 @@ impl<Key: Clone + PartialEq + Send + 'static> Swatch<Key> {
     }
 
     fn show(&mut self, ui: &mut Ui, key: Key, assets: &Arc<Assets>, size: Vec2, told: &str) {
-        if self.asked.as_ref() != Some(&key) {
-            self.asked = Some(key.clone());
+        let files = Arc::downgrade(assets);
+        let is_asked = |(known, of): &(Key, _)| *known == key && Weak::ptr_eq(of, &files);
+        if !self.asked.as_ref().is_some_and(is_asked) {
+            self.asked = Some((key.clone(), files));
             self.thread.order((key, Arc::clone(assets)));
         }
         if let Some(image) = self.thread.take().flatten() {

@@ -22,6 +22,9 @@ pub(super) fn install(ctx: &egui::Context) {
     ctx.set_style_of(Theme::Light, style(Theme::Light));
 }
 
+/// The accent over a picture, which is as bright in either theme.
+pub(super) const ACCENT_ON_PICTURE: Color32 = Tones::DARK.accent;
+
 /// The accent of the theme in use.
 pub(super) fn accent(visuals: &egui::Visuals) -> Color32 {
     if visuals.dark_mode { Tones::DARK.accent } else { Tones::LIGHT.accent }

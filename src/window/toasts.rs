@@ -52,6 +52,13 @@ impl Toasts {
         self.push(text.into(), Kind::Warning);
     }
 
+    /// Takes back what was said, where it is still there: it is so no longer.
+    pub(super) fn settle(&mut self, said: &mut Option<String>) {
+        if let Some(text) = said.take() {
+            self.shown.retain(|toast| toast.text != text);
+        }
+    }
+
     /// Closes the newest message. False where there was none.
     pub(super) fn dismiss(&mut self) -> bool {
         self.shown.pop().is_some()
@@ -135,7 +142,11 @@ mod tests {
     #[test]
     fn a_message_is_shown_once_and_the_oldest_make_room() {
         let mut toasts = Toasts::default();
-        for text in ["a", "b", "b", "c", "d", "e"] {
+        for text in ["a", "b", "b"] {
+            toasts.say(text);
+        }
+        assert_eq!(toasts.shown.len(), 2, "the same is said twice");
+        for text in ["c", "d", "e"] {
             toasts.say(text);
         }
         let texts: Vec<&str> = toasts.shown.iter().map(|toast| toast.text.as_str()).collect();

@@ -66,6 +66,14 @@ impl Watcher {
     }
 }
 
+#[cfg(test)]
+impl Watcher {
+    /// Whether that file is looked at.
+    pub(super) fn watches(&self, path: &std::path::Path) -> bool {
+        self.shared.lock().paths.iter().any(|watched| watched == path)
+    }
+}
+
 impl Drop for Watcher {
     fn drop(&mut self) {
         self.shared.lock().closing = true;

@@ -133,15 +133,21 @@ impl RenderWork {
     }
 }
 
-/// The picture's size in pixels: the viewport's, or the one the file gives.
+/// The picture's size in pixels: from the viewport's, the one the file gives, or both.
 pub(super) fn picture_size(
     description: &SceneDescription,
     mode: SizeMode,
     viewport: [u32; 2],
 ) -> [u32; 2] {
+    let given = [description.render.width, description.render.height];
     match mode {
-        SizeMode::Window => viewport,
-        SizeMode::Fixed => [description.render.width, description.render.height],
+        SizeMode::Fit => {
+            let [room, of] = [viewport, given].map(|size| size.map(f64::from));
+            let scale = (room[0] / of[0]).min(room[1] / of[1]);
+            of.map(|side| (side * scale).round().max(1.0) as u32)
+        }
+        SizeMode::Fill => viewport,
+        SizeMode::Fixed => given,
     }
 }
 

@@ -10,7 +10,7 @@ use crate::window::theme;
 use egui::{Align2, Pos2, Rect, Sense, Shape, Stroke, TextStyle, Ui, Vec2, pos2};
 
 /// Height of the graph in points.
-const HEIGHT: f32 = 124.0;
+const HEIGHT: f32 = 148.0;
 /// Room for the figures on the left and below.
 const MARGIN: Vec2 = Vec2::new(38.0, 18.0);
 /// What the graph shows.
@@ -175,8 +175,13 @@ impl Axes {
                 limit(&pair[1], -1.0),
                 limit(&pair[0], -1.0),
             ];
-            let faint = accent.gamma_multiply(0.22);
+            let faint = accent.gamma_multiply(0.3);
             painter.add(Shape::convex_polygon(band.to_vec(), faint, Stroke::NONE));
+        }
+        for errors in [1.0, -1.0] {
+            let limit = |point: &Point| self.at(point.samples, point.percent_less(errors));
+            let edge = Stroke::new(0.75, accent.gamma_multiply(0.55));
+            painter.line(points.iter().map(limit).collect(), edge);
         }
         if is_rendering && last.samples < goal {
             let then = self.at(goal, last.percent_at(goal));
@@ -184,8 +189,8 @@ impl Axes {
             painter.extend(Shape::dashed_line(&[self.of(last), then], faint, 2.0, 4.0));
         }
         let course = points.iter().map(|point| self.of(point)).collect();
-        painter.line(course, Stroke::new(2.0, accent));
-        painter.circle_filled(self.of(last), 3.5, accent);
+        painter.line(course, Stroke::new(1.25, ui.visuals().strong_text_color()));
+        painter.circle_filled(self.of(last), 3.0, ui.visuals().strong_text_color());
     }
 }
 

@@ -5,13 +5,17 @@ use super::subheading;
 use crate::scene::description::{FilterKind, IntegratorKind, RenderDescription, SamplerKind};
 use crate::window::widgets::{Figure, choice, number_box, pick_one, row, switch};
 use egui::Ui;
+use serde::{Deserialize, Serialize};
 
 /// How large the picture is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub(in crate::window) enum SizeMode {
-    /// As many pixels as the viewport has.
+    /// As large as the viewport shows whole, in the shape that the scene file gives.
     #[default]
-    Window,
+    Fit,
+    /// As many pixels as the viewport has.
+    Fill,
     /// The size the scene file gives.
     Fixed,
 }
@@ -46,8 +50,9 @@ const SAMPLERS: [(SamplerKind, &str, &str); 2] = [
     (SamplerKind::Random, "Random", "independent numbers, to see the difference"),
 ];
 const FILTERS: [(FilterKind, &str); 1] = [(FilterKind::Box, "Box")];
-const SIZES: [(SizeMode, &str, &str); 2] = [
-    (SizeMode::Window, "Window", "as many pixels as the window shows"),
+const SIZES: [(SizeMode, &str, &str); 3] = [
+    (SizeMode::Fit, "Fit", "as large as the window shows, in the scene's own shape"),
+    (SizeMode::Fill, "Fill", "all of the window, whatever its shape"),
     (SizeMode::Fixed, "Fixed", "the size below, which the scene file keeps"),
 ];
 

@@ -14,6 +14,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 /// What a panel under test edits.
+#[derive(Clone, Debug)]
 pub(super) struct Bench {
     pub(super) scene: SceneDescription,
     pub(super) selection: Selection,

@@ -1,6 +1,6 @@
 //! What a hand does to a scene beside the camera: nothing is lost, nothing happens by mistake.
 
-use super::whole::{scene_file, wait_until, window, window_with};
+use super::whole::{scene_file, wait_until, window};
 use crate::io::scene_file;
 use crate::loader::Source;
 use crate::session::Phase;
@@ -125,6 +125,23 @@ fn a_dropped_file_is_opened() {
     std::fs::copy(folder.path().join("small.toml"), &other).unwrap();
     harness.input_mut().dropped_files.push(Arc::new(Dropped(other)));
     wait_until(&mut harness, |app| app.files.title == "other");
+    press_key(&mut harness, Modifiers::NONE, Key::D);
+    let first = folder.path().join("small.toml");
+    harness.input_mut().dropped_files.push(Arc::new(Dropped(first)));
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Do not save").is_some(), "the edit is let go unasked");
+    assert!(harness.state().files.loading.is_none(), "it is loaded without an answer");
+}
+
+#[test]
+fn an_empty_path_opens_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&scene_file(folder.path()), SIZE);
+    harness.state_mut().dialogs.type_path(crate::window::dialogs::Purpose::Open, " ");
+    harness.run_steps(3);
+    press_key(&mut harness, Modifiers::NONE, Key::Enter);
+    assert!(harness.query_by_role_and_label(Role::TextInput, "Path").is_some(), "the box is gone");
+    assert!(harness.state().files.loading.is_none(), "nothing is loaded from nowhere");
 }
 
 #[test]
@@ -188,6 +205,10 @@ fn closing_waits_for_an_answer_about_edits() {
     let answer = ask_to_close(&mut harness);
     assert!(answer.contains(&ViewportCommand::CancelClose), "it closes on unsaved edits");
     harness.run_steps(3);
+    press(&mut harness, "Cancel");
+    assert!(harness.query_by_label("Do not save").is_none(), "the question stays");
+    ask_to_close(&mut harness);
+    harness.run_steps(3);
     harness.get_by_role_and_label(Role::Button, "Do not save").click();
     let mut answers = Vec::new();
     for _ in 0..3 {
@@ -195,6 +216,8 @@ fn closing_waits_for_an_answer_about_edits() {
         answers.extend(commands(&harness));
     }
     assert!(answers.contains(&ViewportCommand::Close), "it does not close then: {answers:?}");
+    let answer = ask_to_close(&mut harness);
+    assert!(!answer.contains(&ViewportCommand::CancelClose), "it asks again");
 }
 
 #[test]
@@ -210,6 +233,12 @@ fn closing_waits_for_an_answer_about_a_picture_at_work() {
     harness.run_steps(3);
     press(&mut harness, "Go on rendering");
     assert!(harness.state().exporter.progress().is_some(), "the picture is stopped");
+    ask_to_close(&mut harness);
+    harness.run_steps(3);
+    press_key(&mut harness, Modifiers::NONE, Key::Escape);
+    assert!(harness.query_by_label("Go on rendering").is_none(), "the question stays");
+    assert!(!harness.state().files.close_confirmed, "Escape closes the window");
+    assert!(harness.state().exporter.progress().is_some(), "Escape stops the picture");
 }
 
 #[test]
@@ -227,47 +256,6 @@ fn a_rendered_picture_ends_at_its_limit_of_noise_in_the_folder_that_was_typed() 
     press_key(&mut harness, Modifiers::NONE, Key::Enter);
     press(&mut harness, "Render");
     wait_until(&mut harness, |_| folder.path().join("small-001.png").is_file());
-}
-
-#[test]
-fn a_copy_of_edits_goes_once_they_are_saved_or_let_go() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = scene_file(folder.path());
-    let own = folder.path().join("own");
-    std::fs::create_dir(&own).unwrap();
-    let copy = own.join("recovery-1.png");
-    let edit = |harness: &mut Harness<'_, App>| {
-        harness.key_press(Key::D);
-        harness.run_steps(80);
-        wait_until(harness, |_| copy.is_file());
-    };
-    let mut harness = window_with(&path, SIZE, Some(own.clone()));
-    edit(&mut harness);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
-    wait_until(&mut harness, |app| !app.document.is_dirty());
-    harness.run_steps(3);
-    assert!(!copy.exists(), "the copy of what is saved stays");
-    edit(&mut harness);
-    drop(harness);
-    let mut harness = window_with(&path, SIZE, Some(own.clone()));
-    harness.run_steps(3);
-    press(&mut harness, "Let it go");
-    assert!(!copy.exists(), "the copy that was let go stays");
-    assert!(harness.query_by_label("Restore it").is_none(), "it is offered again");
-    edit(&mut harness);
-    drop(harness);
-    let mut harness = window_with(&path, SIZE, Some(own));
-    press(&mut harness, "Restore it");
-    wait_until(&mut harness, |app| app.files.title == "recovery-1");
-    assert!(harness.query_by_label("Restore it").is_none(), "the restored one is offered again");
-    assert!(harness.state().document.is_dirty(), "what only the copy holds counts as saved");
-    assert!(copy.is_file(), "the copy is gone before it is saved");
-    let saved = folder.path().join("saved.toml");
-    let ctx = harness.ctx.clone();
-    harness.state_mut().save_to(&ctx, saved);
-    wait_until(&mut harness, |app| !app.document.is_dirty());
-    harness.run_steps(3);
-    assert!(!copy.exists(), "the copy of what is saved stays");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use super::whole::{scene_file, wait_until, window_at};
 use crate::window::app::App;
 use crate::window::dialogs::Purpose;
+use crate::window::files::Pending;
 use egui::{Key, Modifiers, Rect, Role, ThemePreference};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -177,7 +178,7 @@ fn menus_open_whole_and_their_lines_lie_apart() {
 /// Something that opens a box or a page.
 type Opening = fn(&mut Harness<'_, App>);
 
-const BOXES: [(&str, Opening); 9] = [
+const BOXES: [(&str, Opening); 12] = [
     ("the help", |harness| harness.key_press(Key::H)),
     ("the box that renders", |harness| harness.key_press_modifiers(Modifiers::SHIFT, Key::F12)),
     ("the start page", |harness| harness.key_press_modifiers(Modifiers::COMMAND, Key::G)),
@@ -185,6 +186,31 @@ const BOXES: [(&str, Opening); 9] = [
         harness.key_press(Key::D);
         harness.run_steps(2);
         harness.key_press_modifiers(Modifiers::COMMAND, Key::W);
+    }),
+    ("the question about a picture at work", |harness| {
+        harness.state_mut().interface.export.samples = Some(1_048_576);
+        harness.state_mut().export_wanted = true;
+        wait_until(harness, |app| app.exporter.progress().is_some());
+        harness.state_mut().files.pending = Some(Pending::Close);
+    }),
+    ("the loupe", |harness| {
+        harness.key_press(Key::L);
+        let picture = harness.get_by_role_and_label(Role::Canvas, "Picture").rect();
+        // Where it has least room.
+        harness.hover_at(picture.right_bottom() - egui::Vec2::splat(3.0));
+        wait_until(harness, |app| {
+            let is_full = app.work.session.latest().is_some_and(|frame| frame.scale == 1);
+            is_full && app.probe.answer().is_some()
+        });
+    }),
+    ("marks of lights", |harness| {
+        let app = harness.state_mut();
+        app.interface.lights_shown = true;
+        let mut beyond = app.document.description.lights[0].clone();
+        beyond.name = "far above and to the side of all that is in the picture".to_owned();
+        beyond.position = [90.0, 60.0, -9.0];
+        app.document.description.lights[0].position = [0.0, 0.5, 0.0];
+        app.document.description.lights.push(beyond);
     }),
     ("the box for a path", |harness| {
         harness.state_mut().dialogs.type_path(Purpose::Open, "");

@@ -2,15 +2,19 @@
 
 mod bench;
 mod editing;
+mod every_control;
 mod export;
 mod extremes;
+mod keys;
 mod layout;
 mod loading;
 mod navigation;
 mod panels;
 pub(in crate::window) mod parameters;
+mod picking;
 mod promises;
 mod random_user;
+mod reload;
 mod start;
 mod views;
 mod whole;

@@ -244,3 +244,98 @@ fn a_double_click_makes_the_camera_turn_about_that_point() {
     let after = distance(hand.camera().eye, pivot);
     assert!((after - reach).abs() < 1e-9, "turned about something else");
 }
+
+#[test]
+fn the_wheel_goes_towards_the_point_that_the_camera_turns_about() {
+    let mut hand = Hand::new();
+    let pivot = [0.8, 0.5, 0.3];
+    hand.harness.state_mut().interface.navigation.pivot = Some(pivot);
+    let (before, [x, y]) = (hand.camera(), hand.place(pivot));
+    hand.harness.hover_at(hand.picture().center());
+    hand.harness.run_steps(2);
+    hand.harness.event(Event::Zoom(1.5));
+    hand.harness.run_steps(2);
+    let share = distance(hand.camera().eye, pivot) / distance(before.eye, pivot);
+    assert!((share - 1.0 / 1.5).abs() < 1e-3, "{share} of the distance is left");
+    let [new_x, new_y] = hand.place(pivot);
+    let off = (new_x - x).abs().max((new_y - y).abs());
+    assert!(off < 0.01, "from {x}, {y} to {new_x}, {new_y}");
+}
+
+#[test]
+fn the_whole_scene_and_the_scenes_own_camera_are_turned_about_their_target() {
+    let mut hand = Hand::new();
+    for key in [Key::Home, Key::Backspace] {
+        hand.harness.state_mut().interface.navigation.pivot = Some([0.8, 0.5, 0.3]);
+        hand.harness.key_press(key);
+        hand.harness.run_steps(3);
+        let pivot = hand.harness.state().interface.navigation.pivot;
+        assert_eq!(pivot, None, "{key:?} leaves the point of before");
+    }
+}
+
+#[test]
+fn shift_flies_faster() {
+    let flown = |modifiers| {
+        let mut hand = Hand::new();
+        let (before, middle) = (hand.camera(), hand.picture().center());
+        hand.harness.event(Event::ModifiersChanged(modifiers));
+        hand.button(middle, PointerButton::Secondary, true, modifiers);
+        hand.harness.key_down_modifiers(modifiers, Key::W);
+        hand.harness.run_steps(2);
+        hand.harness.key_up_modifiers(modifiers, Key::W);
+        hand.button(middle, PointerButton::Secondary, false, modifiers);
+        distance(hand.camera().eye, before.eye)
+    };
+    let (slow, fast) = (flown(Modifiers::NONE), flown(Modifiers::SHIFT));
+    assert!(0.01 < slow && slow * 1.5 < fast, "{slow} without, {fast} with it");
+}
+
+#[test]
+fn two_clicks_with_ctrl_are_two_clicks_to_focus() {
+    let mut hand = Hand::new();
+    let middle = hand.picture().center();
+    hand.harness.ctx.options_mut(|options| {
+        options.input_options.max_double_click_delay = 2.0;
+    });
+    hand.harness.event(Event::ModifiersChanged(CTRL));
+    for pressed in [true, false, true, false] {
+        hand.button(middle, PointerButton::Primary, pressed, CTRL);
+    }
+    wait_until(&mut hand.harness, |app| {
+        app.awaited_click.is_none() && app.document.description.camera.focal_distance.is_some()
+    });
+    let pivot = hand.harness.state().interface.navigation.pivot;
+    assert_eq!(pivot, None, "the camera turns about it");
+}
+
+#[test]
+fn standard_views_look_at_the_point_that_the_camera_turns_about() {
+    let mut hand = Hand::new();
+    let pivot = [0.8, 0.5, 0.3];
+    hand.harness.state_mut().interface.navigation.pivot = Some(pivot);
+    let reach = distance(hand.camera().eye, pivot);
+    hand.harness.key_press_modifiers(CTRL, Key::Num1);
+    hand.harness.run_steps(3);
+    let camera = hand.camera();
+    let off = distance(camera.target, pivot);
+    assert!(off < 1e-9, "it looks at {:?}", camera.target);
+    let after = distance(camera.eye, pivot);
+    assert!((after - reach).abs() < 1e-9, "from {after} away, not {reach}");
+}
+
+#[test]
+fn scrolling_that_begins_again_after_a_rest_is_a_step_of_its_own() {
+    let mut hand = Hand::new();
+    hand.harness.hover_at(hand.picture().center());
+    hand.harness.run_steps(2);
+    let pinch = |hand: &mut Hand| {
+        hand.harness.event(Event::Zoom(1.1));
+        // Longer than the rest that ends a burst.
+        hand.harness.run_steps(4);
+    };
+    pinch(&mut hand);
+    let between = hand.camera();
+    pinch(&mut hand);
+    hand.assert_one_step(&between, "the second burst");
+}

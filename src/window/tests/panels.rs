@@ -223,8 +223,8 @@ fn display_and_render_follow_their_controls() {
     assert_eq!(rendered.state().accelerator, 1, "another accelerator");
     type_figure(&mut rendered, "Threads", "3");
     assert_eq!(rendered.state().n_threads, 3, "another number of threads");
-    press(&mut rendered, "Size: Window");
-    assert_eq!(rendered.state().size_mode, SizeMode::Window, "the size stays fixed");
+    press(&mut rendered, "Size: Fill");
+    assert_eq!(rendered.state().size_mode, SizeMode::Fill, "the size stays fixed");
 }
 
 #[test]

@@ -38,7 +38,7 @@ fn notes(harness: &mut Harness<'_, Bench>) -> Vec<(String, String)> {
 }
 
 /// A scene with one of every type of everything, named by its type.
-fn full_scene() -> SceneDescription {
+pub(super) fn full_scene() -> SceneDescription {
     let mut scene = small_scene();
     let light = scene.lights[0].clone();
     scene.lights = [
@@ -170,7 +170,10 @@ fn wanted(scene: &SceneDescription) -> Vec<String> {
 }
 
 /// Every panel, with every entry of its list chosen in turn.
-fn for_each_view(scene: &SceneDescription, mut look: impl FnMut(&mut Harness<'_, Bench>)) {
+pub(super) fn for_each_view(
+    scene: &SceneDescription,
+    mut look: impl FnMut(&mut Harness<'_, Bench>),
+) {
     for panel in ALL {
         let mut shown = Vec::new();
         for index in 0..8 {

@@ -4,6 +4,7 @@
 use super::whole::{drag, scene_file, wait_until, window, window_at};
 use crate::scene::description::ColorOrTexture;
 use crate::window::app::App;
+use crate::window::panels::SizeMode;
 use crate::window::views::View;
 use egui::{Key, Role, ThemePreference};
 use egui_kittest::Harness;
@@ -197,4 +198,24 @@ fn a_click_shows_the_object_and_its_material_in_the_panel() {
         assert_eq!((chosen.object, chosen.material, chosen.texture), (object, object, object));
     }
     assert_eq!(harness.state().document.description, before, "a click is an edit");
+}
+
+#[test]
+fn a_picture_keeps_the_scenes_shape_in_a_window_of_any_other() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_eq!(SizeMode::default(), SizeMode::Fit, "another size at first");
+    for (size, is_wide) in [([1400.0, 560.0], true), ([900.0, 900.0], false)] {
+        let mut harness = window(&scene_file(folder.path()), size);
+        harness.state_mut().interface.size_mode = SizeMode::Fit;
+        wait_until(&mut harness, |app| {
+            let frame = app.work.session.latest();
+            frame.is_some_and(|frame| [frame.job.width, frame.job.height] == app.viewport.size)
+        });
+        let room = harness.get_by_role_and_label(Role::Canvas, "Picture").rect().size();
+        let [width, height] = harness.state().viewport.size.map(|side| side as f32);
+        assert!((width / height - 16.0 / 9.0).abs() < 0.01, "{width}x{height}: another shape");
+        let left = [room.x - width, room.y - height];
+        let (free, full) = if is_wide { (left[0], left[1]) } else { (left[1], left[0]) };
+        assert!(full.abs() <= 1.0 && 10.0 < free, "{width}x{height} in {room:?}");
+    }
 }

@@ -1,0 +1,96 @@
+//! Clicks in the picture that a button asked for: where it is sharp, where a light is, what it
+//! lights.
+
+use super::whole::{scene_file, wait_until, window};
+use crate::scene::description::Triple;
+use crate::window::app::App;
+use egui::{Key, Modifiers, Role};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+const SIZE: [f32; 2] = [1024.0, 700.0];
+
+fn ready(folder: &std::path::Path) -> Harness<'static, App> {
+    let mut harness = window(&scene_file(folder), SIZE);
+    wait_until(&mut harness, |app| app.picture_on_show().is_some());
+    harness
+}
+
+fn ask(harness: &mut Harness<'_, App>, button: &str) {
+    harness.get_by_role_and_label(Role::Button, button).click_accesskit();
+    harness.run_steps(3);
+    assert!(harness.state().interface.picking.is_some(), "{button} waits for no click");
+}
+
+/// Clicks on the ball in the middle of the picture; gives back the point of its surface there.
+fn click_on_ball(harness: &mut Harness<'_, App>) -> Triple {
+    let at = harness.get_by_role_and_label(Role::Canvas, "Picture").rect().center();
+    // Apart from a click before, or the two are a double click.
+    harness.run_steps(8);
+    harness.drag_at(at);
+    harness.run_steps(1);
+    harness.drop_at(at);
+    harness.run_steps(2);
+    wait_until(harness, |app| app.awaited_click.is_none());
+    // A ball of radius 1 about the target.
+    let eye = harness.state().document.description.camera.eye;
+    let length = eye.iter().map(|x| x * x).sum::<f64>().sqrt();
+    eye.map(|x| x / length)
+}
+
+fn assert_near(found: Triple, expected: Triple, what: &str) {
+    let off = (0..3).map(|axis| (found[axis] - expected[axis]).abs()).fold(0.0, f64::max);
+    assert!(off < 0.02, "{what} is at {found:?}, not at {expected:?}");
+}
+
+#[test]
+fn a_button_and_a_click_focus_and_the_next_click_does_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = ready(folder.path());
+    ask(&mut harness, "Pick in picture");
+    click_on_ball(&mut harness);
+    let camera = harness.state().document.description.camera.clone();
+    let expected = 26.0_f64.sqrt() - 1.0;
+    let focus = camera.focal_distance.expect("there is a focus");
+    assert!((focus - expected).abs() < 0.01, "the focus is at {focus}, not at {expected}");
+    harness.state_mut().document.description.camera.focal_distance = Some(2.0);
+    harness.run_steps(2);
+    click_on_ball(&mut harness);
+    let focus = harness.state().document.description.camera.focal_distance;
+    assert_eq!(focus, Some(2.0), "a click that nobody asked for focuses");
+}
+
+#[test]
+fn a_light_is_aimed_and_put_where_the_hand_clicks_in_one_step_each() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = ready(folder.path());
+    let before = harness.state().document.description.clone();
+    ask(&mut harness, "Aim it…");
+    let point = click_on_ball(&mut harness);
+    assert_near(harness.state().document.description.lights[0].target, point, "the target");
+    let aimed = harness.state().document.description.clone();
+    ask(&mut harness, "Put it…");
+    click_on_ball(&mut harness);
+    let eye = before.camera.eye;
+    // Off the surface, so that it shines.
+    let off = [0, 1, 2].map(|axis| point[axis] + (eye[axis] - point[axis]) * 0.12);
+    assert_near(harness.state().document.description.lights[0].position, off, "the light");
+    for expected in [aimed, before] {
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        harness.run_steps(3);
+        assert_eq!(harness.state().document.description, expected, "not one step each");
+    }
+}
+
+#[test]
+fn escape_lets_go_of_a_click_that_was_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = ready(folder.path());
+    ask(&mut harness, "Put it…");
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    assert!(harness.state().interface.picking.is_none(), "it still waits");
+    let before = harness.state().document.description.clone();
+    click_on_ball(&mut harness);
+    assert_eq!(harness.state().document.description, before, "the light went there");
+}
