@@ -1,5 +1,7 @@
 //! Every control that is shown says who it is and does something.
 
+use std::time::{Duration, Instant};
+
 use super::bench::Bench;
 use super::parameters::{for_each_view, full_scene};
 use super::whole::{scene_file, wait_until, window};
@@ -133,7 +135,9 @@ fn has_effect(harness: &mut Harness<'_, App>, control: &Control) -> bool {
     let before = look(harness);
     drive(harness, control, 2.0);
     let mut asked_for = false;
-    for _ in 0..50 {
+    // What is written or rendered meanwhile takes as long as the machine is busy.
+    let patience = Instant::now() + Duration::from_secs(20);
+    while Instant::now() < patience {
         asked_for |= look(harness) != before;
         let commands = &harness.output().platform_output.commands;
         asked_for |= !commands.is_empty();
@@ -142,7 +146,7 @@ fn has_effect(harness: &mut Harness<'_, App>, control: &Control) -> bool {
             return true;
         }
         harness.step();
-        std::thread::yield_now();
+        std::thread::sleep(Duration::from_millis(1));
     }
     false
 }
