@@ -1,6 +1,6 @@
 //! The status bar: what the renderer is doing, in words and figures that never flatter.
 
-use super::figures::{duration, noise_text, short};
+use super::figures::{duration, noise_text, short, significant};
 use super::theme;
 use crate::io::progress::Step;
 use crate::loader::LoadProgress;
@@ -84,7 +84,8 @@ pub(super) fn status_ui(
     ui.horizontal_centered(|ui| {
         let [n_done, n_goal] = [line.samples.0, line.samples.1];
         ui.spacing_mut().item_spacing.x = 4.0;
-        let size = format!("{}×{} @ {} %", line.size[0], line.size[1], short(line.zoom_percent));
+        let size =
+            format!("{}×{} @ {} %", line.size[0], line.size[1], significant(line.zoom_percent, 3));
         let strong = RichText::new(work_text(&line.work, n_done, n_goal)).strong();
         ui.add(egui::Label::new(strong).truncate());
         let room_for_details = ui.available_width() > 360.0;
