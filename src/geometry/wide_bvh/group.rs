@@ -168,7 +168,9 @@ impl<I: Isa> Group<I> {
                 let lane = mask.trailing_zeros() as usize % LANES;
                 mask &= mask - 1;
                 let limit = hits.take(first + lane, parameters[lane], id);
-                taken |= u32::from(limit <= parameters[lane]) << lane;
+                // A hit at the very end of a ray is none where any hit will do.
+                let is_taken = if T::SORTED { limit <= parameters[lane] } else { limit < 0.0 };
+                taken |= u32::from(is_taken) << lane;
             }
             // What is taken ends there, or at once where any hit will do.
             let limit = if T::SORTED { t } else { I::F16::splat(-1.0) };
