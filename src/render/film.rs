@@ -149,12 +149,14 @@ impl Film {
         }
         self.n_samples = n_samples;
         let model = ErrorModel::new(settings.sampler, &self.pixels);
-        self.noise = model.noise(&self.pixels);
-        self.model = Some(model);
         if settings.adaptive && is_decision(n_samples) {
             let width = self.width as usize;
             self.allotment = Some(Allotment::new(width, n_samples, &self.pixels, &model));
         }
+        let allotment = self.allotment.as_ref();
+        let step = allotment.and_then(|allotment| allotment.step(n_samples, &self.pixels, &model));
+        self.noise = model.noise(&self.pixels, step);
+        self.model = Some(model);
     }
 
     fn n_pixels(&self) -> usize {

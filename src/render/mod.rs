@@ -26,7 +26,7 @@ pub use crate::geometry::Stopped;
 pub use features::{Feature, PixelMap, Seen};
 pub use film::{Film, Sampling};
 pub use job::{RenderJob, RenderSettings};
-pub use noise::Noise;
+pub use noise::{Noise, Step};
 pub use world::{Pick, World};
 
 /// What a pass did.
