@@ -149,6 +149,9 @@ impl Film {
             }
         }
         self.n_samples = n_samples;
+        if n_samples < 2 {
+            return;
+        }
         let model = ErrorModel::new(settings.sampler, &self.pixels);
         if settings.adaptive && is_decision(n_samples) {
             let width = self.width as usize;
