@@ -21,12 +21,13 @@ mod surface;
 mod triangle;
 mod wide_bvh;
 
+use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::color::Rgb;
 use crate::geometry::kd_tree::{Item, KdTree, Split, Walk};
 use crate::geometry::nearest::Search;
-use crate::geometry::select::Selector;
+use crate::geometry::select::Selection;
 use crate::math::{Aabb, PrimitiveId, Ray, RayBatch};
 
 pub use cost::TraversalCost;
@@ -117,6 +118,19 @@ pub struct Geometry {
     listed: Vec<u32>,
 }
 
+/// What a thread keeps from one batch to the next.
+#[derive(Default)]
+struct Work {
+    selection: Selection,
+    /// Of the selected rays.
+    nearest: Vec<Nearest>,
+    blocked: Vec<bool>,
+}
+
+thread_local! {
+    static WORK: RefCell<Work> = RefCell::default();
+}
+
 impl Geometry {
     /// [`Geometry::build`], to its end.
     pub fn new(instances: Vec<Instance>, kind: AcceleratorKind) -> Self {
@@ -202,34 +216,30 @@ impl Geometry {
     pub fn intersect(&self, rays: &RayBatch, nearest: &mut Vec<Nearest>) {
         nearest.clear();
         nearest.extend(rays.t_max.iter().map(|t| Nearest::new(*t)));
-        let mut selector = Selector::new(rays);
-        // Of what was found so far; from the first box on.
-        let mut limits: Vec<f32> = Vec::new();
-        let (mut selected, mut theirs) = (Vec::new(), Vec::new());
-        let mut gathered = RayBatch::default();
-        for id in &self.listed {
-            let instance = &self.instances[*id as usize];
-            let Some(bounds) = self.box_of(instance) else {
-                instance.intersect_batch(rays, *id, self.kind, nearest);
-                limits.clear();
-                continue;
-            };
-            if limits.is_empty() {
-                limits.extend(nearest.iter().map(Nearest::t));
+        WORK.with_borrow_mut(|Work { selection, nearest: theirs, .. }| {
+            selection.begin();
+            for id in &self.listed {
+                let instance = &self.instances[*id as usize];
+                let Some(bounds) = self.box_of(instance) else {
+                    instance.intersect_batch(rays, *id, self.kind, nearest);
+                    selection.limits.clear();
+                    continue;
+                };
+                if selection.limits.is_empty() {
+                    selection.limits.extend(nearest.iter().map(Nearest::t));
+                }
+                if !selection.select(rays, &bounds) {
+                    continue;
+                }
+                theirs.clear();
+                theirs.extend(selection.places.iter().map(|place| nearest[*place as usize]));
+                instance.intersect_batch(&selection.rays, *id, self.kind, theirs);
+                for (place, theirs) in selection.places.iter().zip(theirs.iter()) {
+                    nearest[*place as usize] = *theirs;
+                    selection.limits[*place as usize] = theirs.t();
+                }
             }
-            selector.select(&bounds, &limits, &mut selected);
-            if selected.is_empty() {
-                continue;
-            }
-            theirs.clear();
-            theirs.extend(selected.iter().map(|place| nearest[*place as usize]));
-            gathered.gather(rays, &selected);
-            instance.intersect_batch(&gathered, *id, self.kind, &mut theirs);
-            for (place, theirs) in selected.iter().zip(&theirs) {
-                nearest[*place as usize] = *theirs;
-                limits[*place as usize] = theirs.t();
-            }
-        }
+        });
         if self.tree.is_some() {
             for (index, nearest) in nearest.iter_mut().enumerate() {
                 let ray = rays.ray(index);
@@ -242,6 +252,8 @@ impl Geometry {
 
     /// Whether anything lies between the ends of each ray; `blocked` is overwritten.
     pub fn occluded(&self, rays: &RayBatch, blocked: &mut Vec<bool>) {
+        blocked.clear();
+        blocked.resize(rays.len(), false);
         self.occluded_by(rays, |_| true, blocked);
     }
 
@@ -255,17 +267,17 @@ impl Geometry {
         is_clear: impl Fn(u32) -> bool + Copy,
         shares: &mut Vec<Rgb>,
     ) {
-        let mut blocked = Vec::new();
+        let mut blocked = vec![false; rays.len()];
         self.occluded_by(rays, |object| !is_clear(object), &mut blocked);
-        // Most rays meet nothing that is clear.
-        let mut is_tinted = Vec::new();
-        self.occluded_by(rays, is_clear, &mut is_tinted);
+        // Most of the others meet nothing that is clear.
+        let mut is_met = blocked.clone();
+        self.occluded_by(rays, is_clear, &mut is_met);
         shares.clear();
         shares.extend(blocked.iter().enumerate().map(|(i, is_blocked)| {
             if *is_blocked {
                 return Rgb::ZERO;
             }
-            if !is_tinted[i] {
+            if !is_met[i] {
                 return Rgb::ONE;
             }
             let ray = rays.ray(i);
@@ -283,47 +295,43 @@ impl Geometry {
         }));
     }
 
-    /// Whether any of the objects to take lies between the ends of each ray.
+    /// Whether any of the objects to take lies between the ends of each ray; those already blocked are
+    /// left out.
     fn occluded_by(
         &self,
         rays: &RayBatch,
         take: impl Fn(u32) -> bool + Copy,
-        blocked: &mut Vec<bool>,
+        blocked: &mut [bool],
     ) {
-        blocked.clear();
-        blocked.resize(rays.len(), false);
-        let mut selector = Selector::new(rays);
-        // Below 0 where a ray is blocked; from the first box on.
-        let mut limits: Vec<f32> = Vec::new();
-        let (mut selected, mut theirs) = (Vec::new(), Vec::new());
-        let mut gathered = RayBatch::default();
-        for id in self.listed.iter().filter(|id| take(**id)) {
-            let instance = &self.instances[*id as usize];
-            let Some(bounds) = self.box_of(instance) else {
-                instance.occluded_batch(rays, *id, self.kind, blocked);
-                limits.clear();
-                continue;
-            };
-            if limits.is_empty() {
-                let limit =
-                    |(is_blocked, t_max): (&bool, &f32)| if *is_blocked { -1.0 } else { *t_max };
-                limits.extend(blocked.iter().zip(&rays.t_max).map(limit));
-            }
-            selector.select(&bounds, &limits, &mut selected);
-            if selected.is_empty() {
-                continue;
-            }
-            theirs.clear();
-            theirs.resize(selected.len(), false);
-            gathered.gather(rays, &selected);
-            instance.occluded_batch(&gathered, *id, self.kind, &mut theirs);
-            for (place, is_blocked) in selected.iter().zip(&theirs) {
-                if *is_blocked {
-                    blocked[*place as usize] = true;
-                    limits[*place as usize] = -1.0;
+        WORK.with_borrow_mut(|Work { selection, blocked: theirs, .. }| {
+            selection.begin();
+            for id in self.listed.iter().filter(|id| take(**id)) {
+                let instance = &self.instances[*id as usize];
+                let Some(bounds) = self.box_of(instance) else {
+                    instance.occluded_batch(rays, *id, self.kind, blocked);
+                    selection.limits.clear();
+                    continue;
+                };
+                if selection.limits.is_empty() {
+                    let limit = |(is_blocked, t_max): (&bool, &f32)| {
+                        if *is_blocked { -1.0 } else { *t_max }
+                    };
+                    selection.limits.extend(blocked.iter().zip(&rays.t_max).map(limit));
+                }
+                if !selection.select(rays, &bounds) {
+                    continue;
+                }
+                theirs.clear();
+                theirs.resize(selection.places.len(), false);
+                instance.occluded_batch(&selection.rays, *id, self.kind, theirs);
+                for (place, is_blocked) in selection.places.iter().zip(theirs.iter()) {
+                    if *is_blocked {
+                        blocked[*place as usize] = true;
+                        selection.limits[*place as usize] = -1.0;
+                    }
                 }
             }
-        }
+        });
         if self.tree.is_some() {
             for (index, blocked) in blocked.iter_mut().enumerate() {
                 *blocked = *blocked || self.occluded_by_tree(&rays.ray(index), take);
