@@ -1,6 +1,7 @@
 //! The window driven by label and role, without a display.
 
 mod bench;
+mod disks;
 mod editing;
 mod every_control;
 mod export;
