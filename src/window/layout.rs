@@ -7,9 +7,9 @@ use super::keys::Action;
 use super::loupe::{LoupeFacts, loupe_ui};
 use super::panels::{self, Convergence, RenderFacts};
 use super::parameter::take_reset;
-use super::probe::described;
+use super::probe::{described, feature_at, pixel_at};
 use super::start::start_ui;
-use super::status::{PixelUnderCursor, StatusLine, Work, loading_ui, status_ui};
+use super::status::{StatusLine, Work, loading_ui, status_ui};
 use super::toolbar::{ToolbarChoice, ToolbarFacts, toolbar_ui};
 use super::viewport::{ViewportOutput, physical_size, viewport_ui};
 use super::views::legend_ui;
@@ -234,11 +234,8 @@ impl App {
         scene: &SceneDescription,
     ) {
         let [_, height] = self.viewport.size;
-        let known = output.hovered_pixel.zip(frame).and_then(|([x, y], frame)| {
-            let map = frame.maps.features.as_ref()?;
-            // A coarse map would name the neighbour.
-            let is_full = (map.width, map.height) == (frame.job.width, frame.job.height);
-            let feature = map.get(x, y).filter(|_| is_full)?;
+        let known = output.hovered_pixel.zip(frame).and_then(|(at, frame)| {
+            let feature = feature_at(frame, at)?;
             Some(described(feature, scene, &self.work.assets, height))
         });
         let is_free = self.awaited_click.is_none();
@@ -280,18 +277,6 @@ impl App {
             zoom_percent: self.viewport.zoom_percent,
         }
     }
-}
-
-/// The linear value of a pixel of the picture, from a frame that may be coarser.
-fn pixel_at(frame: &Frame, [x, y]: [u32; 2]) -> Option<PixelUnderCursor> {
-    let picture = &frame.picture;
-    let (column, row) = (x / frame.scale.max(1), y / frame.scale.max(1));
-    if picture.width <= column || picture.height <= row {
-        return None;
-    }
-    let index = row as usize * picture.width as usize + column as usize;
-    let linear = *picture.pixels.get(index)?;
-    Some(PixelUnderCursor { at: [x, y], linear })
 }
 
 /// Size and cost of the trees, name and value.
