@@ -20,6 +20,9 @@ use crate::session::{Frame, Phase};
 use crate::threads;
 use egui::{Margin, Panel, Rect, Ui};
 
+/// How wide the panel can be, in points: what its lines need, and what is left to the picture.
+const PANEL_RANGE: std::ops::RangeInclusive<f32> = 324.0..=520.0;
+
 impl App {
     /// The bars, the panel and the picture, editing `scene` in place.
     pub(super) fn layout_ui(&mut self, ui: &mut Ui, scene: &mut SceneDescription) {
@@ -29,7 +32,7 @@ impl App {
         let panel_shown = self.interface.panel_shown && !self.interface.start_shown;
         let side = Panel::right("settings")
             .default_size(self.interface.panel_width)
-            .size_range(272.0..=520.0)
+            .size_range(PANEL_RANGE)
             .resizable(true)
             .frame(egui::Frame::side_top_panel(ui.style()).inner_margin(Margin {
                 left: 8,
