@@ -117,6 +117,9 @@ impl App {
         let settings = Settings::new(own_folder.as_deref(), remembered.clone());
         let interface = remembered.restore();
         ctx.set_theme(interface.theme);
+        ctx.set_zoom_factor(interface.scale);
+        // The table of keys says what they do.
+        ctx.options_mut(|options| options.zoom_with_keyboard = false);
         Ok(Self {
             home_camera: empty.camera.clone(),
             document: Document::new(empty, None),
