@@ -163,7 +163,8 @@ impl App {
 
     fn start_page(&mut self, ui: &mut Ui) {
         let (recent, can_return) = (&self.interface.recent, self.files.has_scene);
-        let chosen = start_ui(ui, &mut self.thumbnails, recent, can_return);
+        self.thumbnails.update(ui.ctx(), self.recent_pictures.places(recent));
+        let chosen = start_ui(ui, &self.thumbnails, recent, can_return);
         self.viewport.hovered_pixel = None;
         self.viewport.flying = false;
         self.viewport.rect = ui.max_rect();
