@@ -7,10 +7,9 @@
 //!
 //! Without a name of a part, all of them, the window first.
 //!
-//! `edits` drives the session as the window does, at 1280 x 720, with one render thread less than there are
-//! processors: light size, roughness, aperture and camera of the final scene and of a mesh of
-//! 100 000 triangles, one edit after the other. One JSON line for each scene and kind of edit, in
-//! milliseconds. `tones` is the cost of tone mapping one picture. `window` (on Linux) is what the
+//! `edits` drives the session as the window does, at 1280 x 720 and with as many threads: light size,
+//! roughness, aperture and camera of the final scene and of a mesh of 100 000 triangles, one edit after
+//! the other. One JSON line for each scene and kind of edit, in milliseconds. `tones` is the cost of tone mapping one picture. `window` (on Linux) is what the
 //! window's own thread spends on its frames.
 #![expect(clippy::print_stdout, reason = "a bench prints its figures")]
 
@@ -66,7 +65,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 fn edits() -> Result<(), Box<dyn std::error::Error>> {
     let signal = Arc::new((Mutex::new(0_u64), Condvar::new()));
     let theirs = Arc::clone(&signal);
-    let n_threads = penumbra::threads::available().saturating_sub(1).max(1);
+    let n_threads = penumbra::threads::beside_window();
     let session = Session::new(n_threads, move || {
         *theirs.0.lock().unwrap_or_else(PoisonError::into_inner) += 1;
         theirs.1.notify_all();

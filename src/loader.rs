@@ -3,6 +3,7 @@
 //! [`load`] does the work where it is called; [`Loader`] does it on a thread of its own, the newest
 //! request first, and can be cancelled.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -14,6 +15,7 @@ use crate::io::progress::Step;
 use crate::io::scene_file::{self, LARGEST_FILE, Override, OverrideError, SceneFileError, Section};
 use crate::io::snapshot::{self, RenderRecord, SnapshotError};
 use crate::io::{crash, gallery, printable_path};
+use crate::math::Aabb;
 use crate::scene::assets::{Assets, MeshAsset, MeshKey};
 use crate::scene::description::SceneDescription;
 
@@ -161,7 +163,7 @@ fn load_telling(
     let description = scene_file::parse(&opened.text, overrides).map_err(scene_error)?;
     let mut reading = Reading::new(&opened.folder, stop, told);
     reading.report.extend(opened.report.iter().cloned());
-    reading.assets.meshes.extend(opened.mesh.clone());
+    reading.assets.meshes.extend(opened.meshes.clone());
     reading.records.extend(opened.mesh_files.iter().cloned());
     reading.all_of(&description).map_err(|failure| match failure {
         AssetFailure::Cancelled => LoadError::Cancelled,
@@ -214,7 +216,7 @@ struct Opened {
     folder: Folder,
     snapshot: Option<RenderRecord>,
     /// A mesh in a scene's place, read already.
-    mesh: Option<(MeshKey, Arc<MeshAsset>)>,
+    meshes: HashMap<MeshKey, Arc<MeshAsset>>,
     mesh_files: Vec<FileRecord>,
     report: Vec<String>,
 }
@@ -258,7 +260,7 @@ impl Opened {
             text,
             folder,
             snapshot: None,
-            mesh: None,
+            meshes: HashMap::new(),
             mesh_files: Vec::new(),
             report: Vec::new(),
         }
@@ -276,20 +278,21 @@ impl Opened {
         let folder = Folder::of(path);
         let mut reading = Reading::new(&folder, stop, told);
         let mut description = framing::scene_around(&file, None);
-        let key = description.objects.first().and_then(MeshKey::of);
-        let Some(key) = key else { return Err(LoadError::NotInGallery(name)) };
-        let asset = reading.mesh_of(&key, bytes).map_err(|error| match error {
+        let keys = description.objects.iter().filter_map(MeshKey::of);
+        reading.meshes_of(&file, keys, bytes).map_err(|error| match error {
             ObjError::Cancelled => LoadError::Cancelled,
             error => LoadError::Mesh { name: name.clone(), error },
         })?;
         reading.records.insert(0, FileRecord::of(&file, bytes));
-        let reach = asset.traced.bounds.max_abs();
+        let meshes = reading.assets.meshes;
+        let bounds = meshes.values().map(|mesh| mesh.traced.bounds).fold(Aabb::EMPTY, Aabb::union);
+        let reach = bounds.max_abs();
         if framing::FARTHEST < reach {
             return Err(LoadError::Unframed { name, reach });
         }
-        description = framing::scene_around(&file, Some(asset.traced.bounds));
+        description = framing::scene_around(&file, Some(bounds));
         let mut opened = Self::scene(name, scene_file::write(&description), folder.clone());
-        opened.mesh = Some((key, Arc::new(asset)));
+        opened.meshes = meshes;
         opened.mesh_files = reading.records;
         opened.report = reading.report;
         Ok(opened)

@@ -73,7 +73,7 @@ fn lower_priority() {
     #[cfg(target_os = "linux")]
     {
         // Rendering at normal priority is no failure.
-        let _ = rustix::process::nice(5);
+        let _ = rustix::process::nice(10);
     }
 }
 
@@ -87,6 +87,14 @@ pub fn panic_text(panic: &(dyn Any + Send)) -> String {
 /// Processors that this process may use, at least 1.
 pub fn available() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// How many of [`background_pool`] go with a window: all but one, for what else the machine does, or
+/// both of two, of which the window, at its higher priority, gets what it needs.
+pub fn beside_window() -> usize {
+    const FEW: usize = 2;
+    let n = available();
+    if n <= FEW { n } else { n - 1 }
 }
 
 #[cfg(test)]

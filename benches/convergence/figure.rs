@@ -15,6 +15,9 @@ use crate::{Failure, KINDS, Kind, Options, job, luminances};
 
 /// Fewer samples tell too little.
 const FEWEST: u32 = 8;
+/// Samples from which forecasts are judged where samples go where the error is: those that are shared
+/// out first fall by more than anything seen before.
+const FIRST_DECISION: u32 = 16;
 /// Doublings ahead of which samples are foretold.
 const AHEAD: usize = 3;
 
@@ -90,7 +93,9 @@ fn judge_kind(
         known.push(found);
         samples *= 2;
     }
-    let foretold = runs.iter().flat_map(|run| foretold(&run.noises)).collect();
+    let n_unknown = if kind.adaptive { (FIRST_DECISION / FEWEST).ilog2() } else { 0 };
+    let known_of = |run: &Run| foretold(&run.noises[n_unknown as usize..]);
+    let foretold = runs.iter().flat_map(known_of).collect();
     Ok(Judged { name, kind, known, foretold })
 }
 

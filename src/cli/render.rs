@@ -13,7 +13,7 @@ use crate::geometry::AcceleratorKind;
 use crate::io::output::{OutputFormat, check_writable, keep_elsewhere, replace_file};
 use crate::io::scene_file::Override;
 use crate::io::snapshot;
-use crate::io::{crash, printable_path};
+use crate::io::{crash, memory, printable_path};
 use crate::loader::{LoadError, Loaded, Source, load};
 use crate::render::{RenderJob, RenderSettings, World};
 use crate::scene::resolve;
@@ -21,6 +21,9 @@ use crate::session::Goal;
 use crate::session::admit::admit;
 use crate::session::develop::{Developed, develop, encode};
 use crate::threads;
+
+/// Bytes without which even a small scene is not begun.
+const LEAST: u64 = 16 << 20;
 
 pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     let output = &arguments.output;
@@ -74,6 +77,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
 
 /// Loads a file; a wrong `--set` is the command line's fault.
 pub(super) fn open(file: &Path, overrides: &[Override]) -> Result<Loaded, Failure> {
+    memory::check(LEAST).map_err(|error| anyhow!("penumbra itself {error}"))?;
     match load(&Source::File(file.to_owned()), overrides, &AtomicBool::new(false)) {
         Ok(loaded) => Ok(loaded),
         Err(LoadError::Override(error)) => Err(Failure::Usage(error.to_string())),

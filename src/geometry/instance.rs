@@ -204,7 +204,7 @@ impl Instance {
 
     /// Rays of the world as a mesh sees them, with one rounding.
     fn object_rays(&self, rays: &RayBatch) -> RayBatch {
-        let mut batch = RayBatch::default();
+        let mut batch = RayBatch::with_capacity(rays.len());
         for start in (0..rays.len()).step_by(BLOCK) {
             let n = BLOCK.min(rays.len() - start);
             let mut block = rays.block(start, n);

@@ -26,6 +26,10 @@ pub struct Normals {
 /// with each, and no smooth surface has such a vertex.
 const MAX_FACES_AT_CREASE: usize = 4096;
 
+/// Comparisons in a whole mesh, a second or two of them. A surface takes some forty a vertex; where
+/// a mesh takes more than this, its most crowded vertices are passed over.
+const MAX_COMPARISONS: u64 = 1 << 30;
+
 /// Cosine by which faces may miss the crease angle and still count as within it: the right angles
 /// of a box are rarely right to the last bit.
 const CREASE_SLACK: f64 = 1e-6;
@@ -147,6 +151,7 @@ fn smooth_within(
 ) -> Normals {
     let min_cosine = portable::cos_f64(crease_angle) - CREASE_SLACK;
     let around = CornersAround::new(n_vertices, triangles);
+    let max_faces = max_faces_at_crease(n_vertices, &around);
     let mut normals = Vec::with_capacity(n_vertices);
     let mut ids = vec![[ABSENT; 3]; triangles.len()];
     for vertex in 0..n_vertices {
@@ -158,7 +163,8 @@ fn smooth_within(
                 continue;
             }
             let mut sum = Sum::default();
-            if corners.len() <= MAX_FACES_AT_CREASE {
+            let is_crowded = max_faces < corners.len();
+            if !is_crowded {
                 for (other_id, other_corner) in corners.iter().map(split_corner) {
                     let other = &faces[other_id];
                     if min_cosine <= face.normal.dot(other.normal) {
@@ -167,8 +173,9 @@ fn smooth_within(
                 }
             }
             let normal = sum.average().unwrap_or_else(|| face.normal.as_vec3());
-            let known = normals[first..].iter().rposition(|n| *n == normal);
-            let id = known.map_or(normals.len(), |i| first + i);
+            let from = if is_crowded { first.max(normals.len().saturating_sub(1)) } else { first };
+            let known = normals[from..].iter().rposition(|n| *n == normal);
+            let id = known.map_or(normals.len(), |i| from + i);
             if known.is_none() {
                 normals.push(normal);
             }
@@ -176,6 +183,19 @@ fn smooth_within(
         }
     }
     Normals { normals, ids }
+}
+
+/// Faces at a vertex, up to which creases are looked for in this mesh.
+fn max_faces_at_crease(n_vertices: usize, around: &CornersAround) -> usize {
+    let n_comparisons = |limit: usize| -> u64 {
+        let counts = (0..n_vertices).map(|vertex| around.vertex(vertex).len());
+        counts.filter(|n| *n <= limit).map(|n| (n * n) as u64).sum()
+    };
+    let mut limit = MAX_FACES_AT_CREASE;
+    while MAX_COMPARISONS < n_comparisons(limit) {
+        limit /= 2;
+    }
+    limit
 }
 
 /// Normals weighted by angles.

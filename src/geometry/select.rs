@@ -3,19 +3,25 @@
 //! What remains of a batch is traced together, so that packets stay full where a scene has many
 //! objects. Blocks of rays are held against a box first, as one beam: most pass by all together.
 
-use std::cell::OnceCell;
-
 use crate::math::vectorized::{BLOCK, Lane, vectorized};
 use crate::math::{Aabb, RayBatch};
 
-/// A batch ready to be tested against boxes of the world.
-pub(super) struct Selector<'a> {
-    rays: &'a RayBatch,
-    /// From the first time that it is needed.
-    slopes: OnceCell<Slopes>,
+/// Rays of a batch on their way from object to object, with memory that serves one batch after another.
+#[derive(Default)]
+pub(super) struct Selection {
+    /// Up to where each ray of the batch is of interest, below 0 if it is not any more.
+    pub(super) limits: Vec<f32>,
+    /// Places of the rays in question.
+    pub(super) places: Vec<u32>,
+    /// Those rays.
+    pub(super) rays: RayBatch,
+    slopes: Slopes,
+    /// For each block of rays, whether it may touch a box.
+    is_near: Vec<u32>,
 }
 
 /// What the tests of boxes need beside the origins.
+#[derive(Default)]
 struct Slopes {
     /// Of the directions.
     reciprocals: [Vec<f32>; 3],
@@ -24,26 +30,31 @@ struct Slopes {
     greatest: [Vec<f32>; 6],
 }
 
-impl<'a> Selector<'a> {
-    pub(super) fn new(rays: &'a RayBatch) -> Self {
-        Self { rays, slopes: OnceCell::new() }
+impl Selection {
+    /// Begins with the rays of another batch, of which nothing is known yet.
+    pub(super) fn begin(&mut self) {
+        self.limits.clear();
+        self.slopes.clear();
     }
 
-    /// Overwrites `selected` with the rays that may touch the box before their limits, one a ray;
-    /// those whose limit is below 0 do not. For each ray the box is grown by the bound of the
-    /// rounding errors.
-    pub(super) fn select(&mut self, bounds: &Aabb, limits: &[f32], selected: &mut Vec<u32>) {
-        let slopes = self.slopes.get_or_init(|| Slopes::new(self.rays));
-        let mut is_near = vec![0; limits.len().div_ceil(BLOCK)];
-        near_beams(bounds, &slopes.least, &slopes.greatest, &mut is_near);
-        selected.clear();
-        let near = is_near.iter().enumerate().filter(|(_, is_near)| **is_near != 0);
+    /// Takes the rays of `batch`, one a limit, that may touch the box before their limits; those whose
+    /// limit is below 0 do not. For each ray the box is grown by the bound of the rounding errors.
+    /// Whether there are any.
+    pub(super) fn select(&mut self, batch: &RayBatch, bounds: &Aabb) -> bool {
+        if self.slopes.is_empty() {
+            self.slopes.fill(batch);
+        }
+        self.is_near.clear();
+        self.is_near.resize(batch.len().div_ceil(BLOCK), 0);
+        near_beams(bounds, &self.slopes.least, &self.slopes.greatest, &mut self.is_near);
+        self.places.clear();
+        let near = self.is_near.iter().enumerate().filter(|(_, is_near)| **is_near != 0);
         for start in near.map(|(block, _)| block * BLOCK) {
             let mut touches = [0; BLOCK];
-            let [ox, oy, oz] = &self.rays.origin;
-            let [rx, ry, rz] = &slopes.reciprocals;
+            let [ox, oy, oz] = &batch.origin;
+            let [rx, ry, rz] = &self.slopes.reciprocals;
             let columns = [ox, oy, oz, rx, ry, rz].map(|column| &column[start..]);
-            let limits = &limits[start..];
+            let limits = &self.limits[start..];
             match whole_lanes(columns, limits) {
                 Some((columns, limits)) => touching(bounds, columns, limits, &mut touches),
                 None => {
@@ -62,8 +73,13 @@ impl<'a> Selector<'a> {
                 found[n_found] = (start + i) as u32;
                 n_found += is_touched as usize;
             }
-            selected.extend_from_slice(&found[..n_found]);
+            self.places.extend_from_slice(&found[..n_found]);
         }
+        if self.places.is_empty() {
+            return false;
+        }
+        self.rays.gather(batch, &self.places);
+        true
     }
 }
 
@@ -77,18 +93,28 @@ fn whole_lanes<'a>(
 }
 
 impl Slopes {
-    fn new(rays: &RayBatch) -> Self {
+    fn clear(&mut self) {
+        let [x, y, z] = &mut self.reciprocals;
+        let columns = [x, y, z].into_iter().chain(&mut self.least).chain(&mut self.greatest);
+        columns.for_each(Vec::clear);
+    }
+
+    fn is_empty(&self) -> bool {
+        self.reciprocals[0].is_empty()
+    }
+
+    fn fill(&mut self, rays: &RayBatch) {
         let reciprocal = |d: &f32| {
             /// Reciprocals stay finite.
             const SMALLEST: f32 = 1e-20;
             1.0 / if d.abs() < SMALLEST { SMALLEST.copysign(*d) } else { *d }
         };
-        let reciprocals: [Vec<f32>; 3] =
-            rays.direction.each_ref().map(|column| column.iter().map(reciprocal).collect());
-        let columns = || rays.origin.iter().chain(&reciprocals);
-        let mut least: [Vec<f32>; 6] = Default::default();
-        let mut greatest: [Vec<f32>; 6] = Default::default();
-        for (column, (least, greatest)) in columns().zip(least.iter_mut().zip(&mut greatest)) {
+        for (reciprocals, column) in self.reciprocals.iter_mut().zip(&rays.direction) {
+            reciprocals.extend(column.iter().map(reciprocal));
+        }
+        let columns = rays.origin.iter().chain(&self.reciprocals);
+        let extents = self.least.iter_mut().zip(&mut self.greatest);
+        for (column, (least, greatest)) in columns.zip(extents) {
             for start in (0..column.len()).step_by(BLOCK) {
                 let block = &column[start..column.len().min(start + BLOCK)];
                 // The first one fills the places of rays that are not there.
@@ -99,7 +125,6 @@ impl Slopes {
                 greatest.push(high);
             }
         }
-        Self { reciprocals, least, greatest }
     }
 }
 
@@ -246,8 +271,20 @@ mod tests {
             let expected: Vec<u32> = (0..500).filter(touches).collect();
             assert!(expected.len() > 50 && expected.len() < 400, "{}", expected.len());
             for (level, selected) in at_every_level(|| {
-                let mut selected = Vec::new();
-                Selector::new(&rays).select(&bounds, &rays.t_max, &mut selected);
+                let mut selection = Selection::default();
+                // Of another batch before.
+                selection.limits.push(1.0);
+                let mut other = RayBatch::default();
+                other.push(Ray::new(Vec3::splat(3.0), Vec3::X));
+                assert!(!selection.select(&other, &bounds), "a ray that passes by");
+                selection.begin();
+                selection.limits.extend(&rays.t_max);
+                assert!(selection.select(&rays, &bounds));
+                let mut selected = selection.places;
+                assert_eq!(selected.len(), selection.rays.len());
+                for (i, place) in selected.iter().enumerate() {
+                    assert_eq!(selection.rays.ray(i), rays.ray(*place as usize));
+                }
                 assert_eq!(selected.pop(), Some(500), "the ray from far away");
                 selected
             }) {

@@ -105,6 +105,7 @@ fn open_without_waiting(path: &Path) -> std::io::Result<File> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::time::Duration;
 
     #[test]
     fn what_is_no_readable_file_is_refused_with_its_path() {
@@ -134,6 +135,26 @@ mod tests {
                 assert!(error.starts_with(name), "{error}");
             }
         }
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_pipe_that_took_a_files_place_is_not_waited_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("a.obj");
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status().unwrap();
+        assert!(made.success(), "mkfifo");
+        let (sender, opened) = std::sync::mpsc::channel();
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                let read = open_without_waiting(&pipe).and_then(|mut file| file.read(&mut [0]));
+                sender.send(read.unwrap()).unwrap();
+            });
+            let n_read = opened.recv_timeout(Duration::from_secs(20));
+            // Lets go whoever waits for the other end.
+            drop(File::options().read(true).write(true).open(&pipe));
+            assert_eq!(n_read, Ok(0), "it waits for the other end");
+        });
     }
 
     #[test]

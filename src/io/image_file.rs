@@ -10,7 +10,7 @@ mod png;
 
 use crate::color::linear_from_srgb;
 use crate::io::memory::NoMemory;
-use crate::io::{excerpt, memory, printable_ends};
+use crate::io::{crash, excerpt, memory, printable_ends};
 use crate::scene::image::Image;
 
 /// Pixels that a picture may have along each side.
@@ -79,13 +79,22 @@ pub fn decode(bytes: &[u8]) -> Result<Image, ImageFileError> {
         return Err(ImageFileError::Empty);
     }
     if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
-        return png::decode(bytes);
+        return contained(png::FORMAT, || png::decode(bytes));
     }
     if bytes.starts_with(b"\xff\xd8\xff") {
-        return jpeg::decode(bytes);
+        return contained(jpeg::FORMAT, || jpeg::decode(bytes));
     }
     let start = excerpt(&bytes[..bytes.len().min(8)]);
     Err(ImageFileError::UnknownFormat { start })
+}
+
+/// Both decoders panic on what no encoder writes: odd palettes, odd sampling factors.
+fn contained(
+    format: &'static str,
+    decode: impl FnOnce() -> Result<Image, ImageFileError>,
+) -> Result<Image, ImageFileError> {
+    let decoded = crash::contain(decode);
+    decoded.unwrap_or_else(|| Err(damaged(format, &"the decoder cannot make sense of it")))
 }
 
 /// Refuses a header whose pixels would take more than the documented memory, or more than there

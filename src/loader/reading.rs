@@ -1,6 +1,6 @@
 //! The files that a scene names, on their way in.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::geometry::TracedMesh;
 use crate::io::files::FileError;
 use crate::io::folder::{FileRecord, Folder};
-use crate::io::obj::{self, ObjError};
+use crate::io::obj::{self, MeshNotes, ObjError};
 use crate::io::progress::{Step, Watch};
 use crate::io::scene_file::Section;
 use crate::io::{excerpt, image_file, mtl};
@@ -50,25 +50,27 @@ impl<'a> Reading<'a> {
 
     /// Everything that a description names, disabled objects and unused textures too.
     pub(super) fn all_of(&mut self, description: &SceneDescription) -> Result<(), AssetFailure> {
+        let mut wanted: HashMap<String, HashSet<MeshKey>> = HashMap::new();
+        for key in description.objects.iter().filter_map(MeshKey::of) {
+            if !self.assets.meshes.contains_key(&key) {
+                wanted.entry(key.file.clone()).or_default().insert(key);
+            }
+        }
         for (index, object) in description.objects.iter().enumerate() {
             self.check_cancelled()?;
-            let ObjectKind::Mesh = object.kind else { continue };
-            let Some(key) = MeshKey::of(object) else { continue };
-            if self.assets.meshes.contains_key(&key) {
-                continue;
-            }
+            let (ObjectKind::Mesh, Some(file)) = (object.kind, &object.file) else { continue };
+            let Some(keys) = wanted.remove(file) else { continue };
             let broken =
                 |message| AssetFailure::Broken { section: Section::Objects, index, message };
-            let bytes = self.read(&key.file).map_err(|error| broken(error.to_string()))?;
-            let label = excerpt(key.file.as_bytes());
-            let asset = self.mesh_of(&key, &bytes).map_err(|error| match error {
+            let bytes = self.read(file).map_err(|error| broken(error.to_string()))?;
+            let label = excerpt(file.as_bytes());
+            self.meshes_of(file, keys, &bytes).map_err(|error| match error {
                 ObjError::Cancelled => AssetFailure::Cancelled,
                 error => broken(format!("{label}: {error}")),
             })?;
             if let Some(lost) = self.lost.take() {
                 return Err(broken(lost.to_string()));
             }
-            self.assets.meshes.insert(key, Arc::new(asset));
         }
         for (index, texture) in description.textures.iter().enumerate() {
             self.check_cancelled()?;
@@ -123,17 +125,47 @@ impl<'a> Reading<'a> {
         bytes
     }
 
-    /// The mesh with its libraries' materials; whatever is wrong with those is reported only.
-    pub(super) fn mesh_of(&mut self, key: &MeshKey, bytes: &[u8]) -> Result<MeshAsset, ObjError> {
-        let told = |step| (self.told)(&key.file, step);
-        let watch = Watch::new(self.stop, &told);
-        let (mesh, notes) = obj::load_mesh(bytes, key.normals, key.crease_angle_deg(), watch)?;
-        let label = excerpt(key.file.as_bytes());
-        let beside = Path::new(&key.file).parent().unwrap_or(Path::new("")).to_owned();
+    /// Reads a mesh once for all the normals that are wanted of it.
+    pub(super) fn meshes_of(
+        &mut self,
+        file: &str,
+        keys: impl IntoIterator<Item = MeshKey>,
+        bytes: &[u8],
+    ) -> Result<(), ObjError> {
+        let (stop, told) = (self.stop, self.told);
+        let told = |step| told(file, step);
+        let watch = Watch::new(stop, &told);
+        let mut parsed = obj::parse(bytes, watch)?;
+        let notes = parsed.take_notes();
+        let slots = self.slots_of(file, notes, !parsed.uvs.is_empty());
+        let mut keys = keys.into_iter().peekable();
+        while let Some(key) = keys.next() {
+            if watch.is_stopped() {
+                return Err(ObjError::Cancelled);
+            }
+            watch.tell(Step::Normals);
+            let is_last = keys.peek().is_none();
+            let own = if is_last { std::mem::take(&mut parsed) } else { parsed.try_clone()? };
+            let mesh = own.into_mesh(key.normals, key.crease_angle_deg());
+            let asset = MeshAsset { traced: Arc::new(TracedMesh::new(mesh)), slots: slots.clone() };
+            self.assets.meshes.insert(key, Arc::new(asset));
+        }
+        Ok(())
+    }
+
+    /// The materials that a mesh's libraries have; whatever is wrong with those is reported only.
+    fn slots_of(
+        &mut self,
+        file: &str,
+        notes: MeshNotes,
+        has_uvs: bool,
+    ) -> Vec<Option<SlotMaterial>> {
+        let label = excerpt(file.as_bytes());
+        let beside = Path::new(file).parent().unwrap_or(Path::new("")).to_owned();
         let named = |path: &Path| beside.join(path).to_string_lossy().into_owned();
         let (materials, warnings) =
             mtl::materials_of_slots(&notes.slot_names, &notes.libraries, |path| {
-                self.read_for(&key.file, &named(path)).map_err(|error| error.reason().to_owned())
+                self.read_for(file, &named(path)).map_err(|error| error.reason().to_owned())
             });
         let told = notes.warnings.into_iter().chain(warnings);
         self.report.extend(told.map(|warning| format!("{label}: {warning}")));
@@ -145,29 +177,79 @@ impl<'a> Reading<'a> {
                 continue;
             };
             let diffuse_map = material.diffuse_map.and_then(|map| {
-                let file = named(Path::new(&map));
-                if !maps.contains_key(&file) {
-                    let bytes = self.read_for(&key.file, &file);
+                let map = named(Path::new(&map));
+                if !maps.contains_key(&map) {
+                    let bytes = self.read_for(file, &map);
                     let image = bytes
                         .map_err(|error| error.to_string())
-                        .and_then(|bytes| decode(&file, &bytes));
+                        .and_then(|bytes| decode(&map, &bytes));
                     if let Err(reason) = &image {
                         self.report.push(format!("{label}: map_Kd {reason}"));
                     }
-                    maps.insert(file.clone(), image.ok().map(Arc::new));
+                    maps.insert(map.clone(), image.ok().map(Arc::new));
                 }
-                maps.get(&file).cloned().flatten()
+                maps.get(&map).cloned().flatten()
             });
             slots.push(Some(SlotMaterial { description: material.description, diffuse_map }));
         }
         let has_map = slots.iter().flatten().any(|slot| slot.diffuse_map.is_some());
-        if mesh.uvs.is_empty() && has_map {
+        if !has_uvs && has_map {
             self.report.push(format!("{label}: has no texture coordinates; (0, 0) is used"));
         }
-        Ok(MeshAsset { traced: Arc::new(TracedMesh::new(mesh)), slots })
+        slots
     }
 }
 
 fn decode(file: &str, bytes: &[u8]) -> Result<Image, String> {
     image_file::decode(bytes).map_err(|error| format!("{}: {error}", excerpt(file.as_bytes())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::description::{NormalsKind, ObjectDescription};
+    use std::cell::RefCell;
+
+    /// Four normals of a tent, whose library is not there.
+    #[test]
+    fn a_mesh_of_several_crease_angles_is_read_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let text = "mtllib gone.mtl\nv 0 0 0\nv 0 0 1\nv 1 1 0\nv 2 0 0\n\
+                    vn 0 1 0\nf 1 2 3\nf 3//1 2//1 4//1\n";
+        std::fs::write(folder.path().join("a.obj"), text).unwrap();
+        let mut description = crate::loader::framing::scene_around("a.obj", None);
+        let wanted = [
+            (NormalsKind::Smooth, 20.0),
+            (NormalsKind::Smooth, 180.0),
+            (NormalsKind::File, 180.0),
+            (NormalsKind::Smooth, 20.0),
+            (NormalsKind::Flat, 20.0),
+        ];
+        description.objects = Vec::from(wanted.map(|(normals, crease_angle)| ObjectDescription {
+            file: Some("a.obj".to_owned()),
+            normals,
+            crease_angle,
+            ..ObjectDescription::new("tent", ObjectKind::Mesh)
+        }));
+        let (stop, steps) = (AtomicBool::new(false), RefCell::new(Vec::new()));
+        let told = |_: &str, step| steps.borrow_mut().push(step);
+        let of = Folder::of(&folder.path().join("scene.toml"));
+        let mut reading = Reading::new(&of, &stop, &told);
+        assert!(reading.all_of(&description).is_ok(), "it cannot be read");
+        let steps = steps.borrow();
+        let n_read = steps.iter().filter(|step| **step == Step::Reading(0.0)).count();
+        // The mesh, and the look for its library.
+        assert_eq!(n_read, 2, "{steps:?}");
+        assert_eq!(reading.report.len(), 1, "told more than once: {:?}", reading.report);
+        assert_eq!(reading.assets.meshes.len(), 4, "other meshes");
+        for (key, asset) in &reading.assets.meshes {
+            let angle = key.crease_angle_deg();
+            let (alone, _) = obj::load_mesh(text.as_bytes(), key.normals, angle, &stop).unwrap();
+            let mesh = &asset.traced.mesh;
+            assert_eq!(mesh.positions, alone.positions, "{key:?}");
+            assert_eq!(mesh.triangles, alone.triangles, "{key:?}");
+            let normals = (&mesh.normals, &mesh.normal_ids);
+            assert_eq!(normals, (&alone.normals, &alone.normal_ids), "{key:?}");
+        }
+    }
 }

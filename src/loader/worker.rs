@@ -39,11 +39,13 @@ struct Shared {
     changed: Condvar,
 }
 
+type Served = Result<Loaded, LoadError>;
+
 #[derive(Debug, Default)]
 struct State {
     request: Option<Request>,
     current: Option<Current>,
-    result: Option<Result<Loaded, LoadError>>,
+    result: Option<Served>,
     is_closing: bool,
 }
 
@@ -77,10 +79,17 @@ impl Loader {
     /// # Errors
     /// When the system has no thread left.
     pub fn new(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+        Self::serving(wake, serve)
+    }
+
+    fn serving(
+        wake: impl Fn() + Send + 'static,
+        serve: impl Fn(Request, &AtomicBool, &Told<'_>) -> Served + Send + 'static,
+    ) -> std::io::Result<Self> {
         let shared =
             Arc::new(Shared { state: Mutex::new(State::default()), changed: Condvar::new() });
         let theirs = Arc::clone(&shared);
-        let thread = threads::spawn("loader", move || theirs.run(wake))?;
+        let thread = threads::spawn("loader", move || theirs.run(wake, serve))?;
         Ok(Self { shared, thread: Some(thread) })
     }
 
@@ -97,12 +106,7 @@ impl Loader {
 
     /// Drops the current request, if any; its result will not come.
     pub fn cancel(&self) {
-        let mut state = self.shared.lock();
-        state.request = None;
-        state.result = None;
-        if let Some(current) = state.current.take() {
-            current.stop.store(true, Ordering::Relaxed);
-        }
+        self.shared.lock().cancel();
     }
 
     /// What is being loaded.
@@ -146,12 +150,22 @@ impl Drop for Loader {
     }
 }
 
+impl State {
+    fn cancel(&mut self) {
+        self.request = None;
+        self.result = None;
+        if let Some(current) = self.current.take() {
+            current.stop.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
 impl Shared {
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn run(&self, wake: impl Fn()) {
+    fn run(&self, wake: impl Fn(), serve: impl Fn(Request, &AtomicBool, &Told<'_>) -> Served) {
         loop {
             let mut state = self.lock();
             while state.request.is_none() && !state.is_closing {
@@ -188,7 +202,7 @@ impl Shared {
     }
 }
 
-fn serve(request: Request, stop: &AtomicBool, told: &Told<'_>) -> Result<Loaded, LoadError> {
+fn serve(request: Request, stop: &AtomicBool, told: &Told<'_>) -> Served {
     let loaded = match request {
         Request::Open(source) => load_telling(&source, &[], stop, told)?,
         Request::Complete(mut loaded) => {
@@ -264,5 +278,52 @@ mod tests {
         loader.open(Source::Gallery("pyramid"));
         woken.recv().unwrap();
         assert!(loader.take().is_some(), "nothing is loaded any more");
+    }
+    /// Cancelled while the thread is at it, whatever it makes of that.
+    #[test]
+    fn what_is_cancelled_on_its_way_never_comes() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.obj");
+        let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{}", "f 1 2 3\n".repeat(20_000));
+        std::fs::write(&path, text).unwrap();
+        let (sender, woken) = std::sync::mpsc::channel();
+        let loader = Loader::new(move || sender.send(()).unwrap()).unwrap();
+        let mut n_cancelled = 0;
+        while n_cancelled < 5 {
+            loader.open(Source::File(path.clone()));
+            let is_cancelled = loop {
+                let mut state = loader.shared.lock();
+                if state.current.is_some() {
+                    state.cancel();
+                    break true;
+                }
+                if state.result.is_some() {
+                    // It was quicker.
+                    break false;
+                }
+            };
+            woken.recv().unwrap();
+            assert_eq!(loader.take().is_none(), is_cancelled, "the cancelled mesh came");
+            n_cancelled += u32::from(is_cancelled);
+        }
+    }
+
+    #[test]
+    fn a_panic_fails_one_request_only() {
+        let (sender, woken) = std::sync::mpsc::channel();
+        let has_failed = AtomicBool::new(false);
+        let serve_later = move |request, stop: &AtomicBool, told: &Told<'_>| {
+            assert!(has_failed.swap(true, Ordering::Relaxed), "a mistake on purpose");
+            serve(request, stop, told)
+        };
+        let loader = Loader::serving(move || sender.send(()).unwrap(), serve_later).unwrap();
+        loader.open(Source::Gallery("pyramid"));
+        woken.recv().unwrap();
+        let told = loader.take().unwrap().unwrap_err().to_string();
+        assert!(told.contains("a mistake on purpose"), "{told}");
+        assert_eq!(loader.progress(), LoadProgress::Idle, "still at it");
+        loader.open(Source::Gallery("pyramid"));
+        woken.recv().expect("the loader lives");
+        assert!(loader.take().is_some_and(|loaded| loaded.is_ok()), "nothing is loaded any more");
     }
 }

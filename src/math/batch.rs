@@ -57,6 +57,17 @@ pub struct RayBatch {
 }
 
 impl RayBatch {
+    /// No rays, with room for so many.
+    pub fn with_capacity(n: usize) -> Self {
+        let column = || Vec::with_capacity(n);
+        Self {
+            origin: [column(), column(), column()],
+            direction: [column(), column(), column()],
+            t_max: column(),
+            source: Vec::with_capacity(n),
+        }
+    }
+
     /// Appends a ray.
     #[inline]
     pub fn push(&mut self, ray: Ray) {

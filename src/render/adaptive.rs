@@ -11,7 +11,7 @@
 //! alone; its own samples are kept out of its decision, and its mean is a plain one.
 
 use crate::math::sampler::mix;
-use crate::render::noise::ErrorModel;
+use crate::render::noise::{ErrorModel, Step, sums};
 use crate::render::pixel::PixelSums;
 
 /// Mean samples a pixel before the first decision.
@@ -75,6 +75,24 @@ impl Allotment {
             }
         }
         Self { n_mean, shares }
+    }
+
+    /// What the samples up to the next decision will do when the mean is `n_mean`; `None` where no more
+    /// come, and for a picture without error.
+    pub(super) fn step(
+        &self,
+        n_mean: u32,
+        pixels: &[PixelSums],
+        model: &ErrorModel,
+    ) -> Option<Step> {
+        let [now, then] = sums(pixels.len(), |place| {
+            let pixel = &pixels[place];
+            let variance = model.variance(pixel);
+            let times = f64::from(self.shares[place].n_after) / f64::from(pixel.n_samples.max(1));
+            [variance, if times > 1.0 { variance * model.fall(times) } else { variance }]
+        });
+        let samples = 2.0 * f64::from(self.n_mean) / f64::from(n_mean);
+        (samples > 1.0 && then < now).then(|| Step { samples, ratio: then / now })
     }
 
     /// Samples of a pixel when the mean is `n_mean`, between this decision and the next.

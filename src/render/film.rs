@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use crate::color::Picture;
 use crate::render::adaptive::{Allotment, is_decision};
 use crate::render::features::PixelMap;
+use crate::render::integrator::Part;
 use crate::render::job::RenderSettings;
 use crate::render::noise::{ErrorModel, Noise};
 use crate::render::pixel::PixelSums;
@@ -121,40 +122,45 @@ impl Film {
         PixelMap { width: self.width, height: self.height, pixels }
     }
 
-    /// A tile's pixels, row by row: what the next pass starts from, and the samples that each has
-    /// when the mean is `n_samples`.
-    pub(super) fn tile(&self, tile: &Tile, n_samples: u32) -> (Vec<PixelSums>, Vec<u32>) {
-        let places = tile.rows().flat_map(|y| self.row(tile, y));
+    /// What the next pass of a tile starts from, and where it goes when the mean is `n_samples`.
+    pub(super) fn part(&self, tile: Tile, n_samples: u32) -> Part {
+        let places = tile.rows().flat_map(|y| self.row(&tile, y));
         let pixels = places.clone().map(|place| self.pixel(place)).collect();
         let goal = |place| match &self.allotment {
             Some(allotment) => allotment.n_samples(place, n_samples),
             None => n_samples,
         };
-        (pixels, places.map(goal).collect())
+        let goals = places.map(goal).collect();
+        Part { tile, goals, pixels }
     }
 
     /// Takes all tiles of a pass, with which the mean is `n_samples`.
-    pub(super) fn commit(
+    pub(super) fn commit<'a>(
         &mut self,
         n_samples: u32,
         settings: &RenderSettings,
-        tiles: &[(Tile, Vec<PixelSums>)],
+        parts: impl Iterator<Item = &'a Part>,
     ) {
         self.pixels.resize(self.n_pixels(), PixelSums::default());
-        for (tile, pixels) in tiles {
+        for Part { tile, pixels, .. } in parts {
             for (y, row) in tile.rows().zip(pixels.chunks_exact(tile.width as usize)) {
                 let to = self.row(tile, y);
                 self.pixels[to].copy_from_slice(row);
             }
         }
         self.n_samples = n_samples;
+        if n_samples < 2 {
+            return;
+        }
         let model = ErrorModel::new(settings.sampler, &self.pixels);
-        self.noise = model.noise(&self.pixels);
-        self.model = Some(model);
         if settings.adaptive && is_decision(n_samples) {
             let width = self.width as usize;
             self.allotment = Some(Allotment::new(width, n_samples, &self.pixels, &model));
         }
+        let allotment = self.allotment.as_ref();
+        let step = allotment.and_then(|allotment| allotment.step(n_samples, &self.pixels, &model));
+        self.noise = model.noise(&self.pixels, step);
+        self.model = Some(model);
     }
 
     fn n_pixels(&self) -> usize {

@@ -53,7 +53,7 @@ mod dimension {
     }
 }
 
-/// Paths that a wave holds at most.
+/// Paths that a wave holds at most, unless there are more pixels.
 const WAVE_SIZE: usize = 4096;
 /// From this depth on, weak paths may end early.
 const ROULETTE_DEPTH: u32 = 4;
@@ -86,8 +86,18 @@ struct Scattered {
     total: f32,
 }
 
+/// A tile whose pixels want more samples.
+pub(super) struct Part {
+    pub(super) tile: Tile,
+    /// Samples that each pixel shall have.
+    pub(super) goals: Vec<u32>,
+    /// Row by row.
+    pub(super) pixels: Vec<PixelSums>,
+}
+
 /// The samples of one pixel in a block.
 struct Run {
+    part: usize,
     /// In the tile, row by row.
     pixel: usize,
     slots: Range<usize>,
@@ -127,6 +137,14 @@ struct Block {
     shading: ShadingBlock,
 }
 
+impl Part {
+    /// Pixels that have fewer samples than they shall.
+    fn n_open(&self) -> usize {
+        let is_open = |(pixel, goal): &(&PixelSums, &u32)| pixel.n_samples < **goal;
+        self.pixels.iter().zip(&self.goals).filter(is_open).count()
+    }
+}
+
 impl<'a> TileRenderer<'a> {
     pub(super) fn new(world: &'a World) -> Self {
         Self {
@@ -147,25 +165,18 @@ impl<'a> TileRenderer<'a> {
         }
     }
 
-    /// Adds samples to a tile's pixels, in sample order, until each has as many as its goal.
-    pub(super) fn render(
-        &mut self,
-        tile: &Tile,
-        goals: &[u32],
-        pixels: &mut [PixelSums],
-    ) -> PassStatistics {
+    /// Adds samples to the pixels of tiles, in sample order, until each has as many as its goal.
+    pub(super) fn render(&mut self, parts: &mut [Part]) -> PassStatistics {
         let mut statistics = PassStatistics::default();
         loop {
-            let is_open = |(pixel, goal): (&PixelSums, &u32)| pixel.n_samples < *goal;
-            let n_open = pixels.iter().zip(goals).filter(|both| is_open(*both)).count();
+            let n_open: usize = parts.iter().map(Part::n_open).sum();
             if n_open == 0 {
                 return statistics;
             }
-            let n_at_once = (WAVE_SIZE / n_open).max(1) as u32;
-            self.start(tile, n_at_once, goals, pixels);
+            self.start(parts, (WAVE_SIZE / n_open).max(1) as u32);
             self.trace(&mut statistics);
             for run in &self.runs {
-                let pixel = &mut pixels[run.pixel];
+                let pixel = &mut parts[run.part].pixels[run.pixel];
                 for sample in &self.radiance[run.slots.clone()] {
                     let is_valid = sample.is_finite();
                     statistics.n_invalid += u64::from(!is_valid);
@@ -194,18 +205,21 @@ impl<'a> TileRenderer<'a> {
     }
 
     /// The first wave: a camera ray for each of the next samples, up to `n_at_once` a pixel.
-    fn start(&mut self, tile: &Tile, n_at_once: u32, goals: &[u32], pixels: &[PixelSums]) {
+    fn start(&mut self, parts: &[Part], n_at_once: u32) {
         let job = &self.world.job;
         let size = Vec2::new(job.width as f32, job.height as f32);
         self.rays.clear();
         self.paths.clear();
         self.runs.clear();
         let mut first_rays = FirstRays::new(job.settings.sampler);
-        for (pixel, (x, y)) in tile.pixels().enumerate() {
+        let pixels = parts.iter().enumerate().flat_map(|(index, part)| {
+            part.tile.pixels().enumerate().map(move |(pixel, at)| (index, part, pixel, at))
+        });
+        for (index, part, pixel, (x, y)) in pixels {
             let first_slot = self.paths.len();
-            let first = pixels[pixel].n_samples;
+            let first = part.pixels[pixel].n_samples;
             let numbers = job.settings.sampler.numbers(x, y, first);
-            for sample in first..goals[pixel].min(first + n_at_once) {
+            for sample in first..part.goals[pixel].min(first + n_at_once) {
                 let numbers = numbers.of_sample(sample);
                 first_rays.push((x, y), &numbers, &job.scene.camera, size, &mut self.rays);
                 self.paths.push(Path {
@@ -216,7 +230,7 @@ impl<'a> TileRenderer<'a> {
                     scattered: None,
                 });
             }
-            self.runs.push(Run { pixel, slots: first_slot..self.paths.len() });
+            self.runs.push(Run { part: index, pixel, slots: first_slot..self.paths.len() });
         }
         first_rays.flush(&job.scene.camera, size, &mut self.rays);
         self.radiance.clear();

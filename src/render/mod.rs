@@ -20,13 +20,13 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
-use crate::render::integrator::TileRenderer;
+use crate::render::integrator::{Part, TileRenderer};
 
 pub use crate::geometry::Stopped;
 pub use features::{Feature, PixelMap, Seen};
 pub use film::{Film, Sampling};
 pub use job::{RenderJob, RenderSettings};
-pub use noise::Noise;
+pub use noise::{Noise, Step};
 pub use world::{Pick, World};
 
 /// What a pass did.
@@ -39,7 +39,7 @@ pub struct PassStatistics {
 }
 
 /// Adds `n_samples` to every pixel of a film of the job's size, or as many on the mean where samples
-/// go where the error is, on the current pool. `stop` is looked at before every tile.
+/// go where the error is, on the current pool. `stop` is looked at before every few tiles.
 ///
 /// Where samples go where the error is, a pass ends wherever they are shared out anew, and the rest is
 /// a pass of its own.
@@ -72,26 +72,29 @@ fn pass_to(
     stop: &AtomicBool,
 ) -> Result<PassStatistics, Stopped> {
     let tiles = plan::tiles(film.width(), film.height());
+    let n_samples = goal - film.n_samples();
+    let n_together = plan::tiles_together(tiles.len(), n_samples, rayon::current_num_threads());
     let (n_rays, n_invalid) = (AtomicU64::new(0), AtomicU64::new(0));
     let finished = {
         let film = &*film;
         tiles
-            .into_par_iter()
+            .par_chunks(n_together)
             .map_init(
                 || TileRenderer::new(world),
-                |renderer, tile| {
+                |renderer, tiles| {
                     if stop.load(Ordering::Relaxed) {
                         return Err(Stopped);
                     }
-                    let (mut pixels, goals) = film.tile(&tile, goal);
-                    let statistics = renderer.render(&tile, &goals, &mut pixels);
+                    let mut parts: Vec<Part> =
+                        tiles.iter().map(|tile| film.part(*tile, goal)).collect();
+                    let statistics = renderer.render(&mut parts);
                     n_rays.fetch_add(statistics.n_rays, Ordering::Relaxed);
                     n_invalid.fetch_add(statistics.n_invalid, Ordering::Relaxed);
-                    Ok((tile, pixels))
+                    Ok(parts)
                 },
             )
             .collect::<Result<Vec<_>, Stopped>>()?
     };
-    film.commit(goal, &world.job.settings, &finished);
+    film.commit(goal, &world.job.settings, finished.iter().flatten());
     Ok(PassStatistics { n_rays: n_rays.into_inner(), n_invalid: n_invalid.into_inner() })
 }

@@ -50,6 +50,15 @@ pub fn pass_samples(n_samples: u32, goal: u32) -> u32 {
     size.min(next_power - n_samples).min(goal.saturating_sub(n_samples))
 }
 
+/// How many tiles to render together, so that few samples a pixel make waves worth their while, and
+/// every thread has a few shares.
+pub fn tiles_together(n_tiles: usize, n_samples: u32, n_threads: usize) -> usize {
+    const WAVE: u32 = 1024;
+    const SHARES: usize = 4;
+    let of_wave = WAVE / (TILE_SIZE * TILE_SIZE) / n_samples.max(1);
+    (of_wave as usize).min(n_tiles / (SHARES * n_threads.max(1))).max(1)
+}
+
 /// By how much a preview is smaller than the picture: the least power of two up to 64 at which one
 /// sample a pixel fits `budget_secs`, at a measured number of samples a second.
 pub fn preview_scale(n_pixels: u64, samples_per_sec: f64, budget_secs: f64) -> u32 {
@@ -88,6 +97,16 @@ mod tests {
                 power *= 2;
             }
         }
+    }
+
+    #[test]
+    fn tiles_go_together_for_few_samples_and_few_threads() {
+        assert_eq!(tiles_together(1000, 1, 2), 4, "1024 paths");
+        assert_eq!(tiles_together(1000, 2, 2), 2, "the same");
+        assert_eq!(tiles_together(1000, 16, 2), 1, "enough paths each");
+        assert_eq!(tiles_together(20, 1, 2), 2, "four shares a thread");
+        assert_eq!(tiles_together(3, 1, 64), 1, "fewer tiles than threads");
+        assert_eq!(tiles_together(1000, u32::MAX / 256, 2), 1);
     }
 
     #[test]

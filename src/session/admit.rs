@@ -28,6 +28,10 @@ pub enum TooLarge {
     },
 }
 
+/// Bytes for all that is not estimated: what threads keep for themselves, the smaller parts of a
+/// scene, a file on its way out.
+const BESIDE: u64 = 8 << 20;
+
 /// Refuses a job whose film and trees do not fit beside what is in use.
 ///
 /// # Errors
@@ -35,7 +39,7 @@ pub enum TooLarge {
 pub fn admit(job: &RenderJob) -> Result<(), TooLarge> {
     let picture = job.picture_bytes();
     let (n_triangles, trees) = job.unbuilt_trees();
-    memory::check(picture.saturating_add(trees)).map_err(|error| {
+    memory::check(picture.saturating_add(trees).saturating_add(BESIDE)).map_err(|error| {
         if trees < picture {
             return TooLarge::Picture { width: job.width, height: job.height, error };
         }

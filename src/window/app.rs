@@ -116,7 +116,7 @@ impl App {
         if let (false, Some(path)) = (complaints.is_empty(), &keys_file) {
             toasts.fail(format!("{}\n{}", path.display(), complaints.join("\n")));
         }
-        let settings = Settings::new(own_folder.as_deref(), remembered.clone());
+        let settings = Settings::new(own_folder.as_deref(), remembered.clone(), ctx);
         let interface = remembered.restore();
         ctx.set_theme(interface.theme);
         ctx.set_zoom_factor(interface.scale);
@@ -171,7 +171,15 @@ impl App {
         self.take_export(ctx);
         self.reload_if_changed();
         self.keep_copy(ctx);
+        if let Some(fault) = self.settings.take_fault() {
+            self.toasts.fail(fault);
+        }
         self.guard_close(ctx);
+    }
+
+    /// Keeps what outlives the window.
+    pub(super) fn keep_settings(&mut self) {
+        self.settings.keep(&Remembered::of(&self.interface));
     }
 
     /// One frame of the window.
@@ -213,7 +221,7 @@ impl eframe::App for App {
     }
 
     fn save(&mut self, _storage: &mut dyn eframe::Storage) {
-        self.settings.keep(&Remembered::of(&self.interface));
+        self.keep_settings();
     }
 }
 

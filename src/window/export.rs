@@ -3,7 +3,7 @@
 
 use super::app::App;
 use super::export_settings::Destination;
-use super::output::write_numbered;
+use super::output::{check_numbered, write_numbered};
 use super::panels::Limits;
 use crate::io::folder::{FileRecord, Folder};
 use crate::io::output::OutputFormat;
@@ -162,9 +162,12 @@ fn make(
     stop: &AtomicBool,
     mut tell: impl FnMut(ExportProgress),
 ) -> Exported {
-    if order.destination == Destination::File && !order.folder.is_dir() {
-        let folder = order.folder.display();
-        return Exported::Failed(format!("{folder}: is no folder; choose one for the picture"));
+    let ending = order.format.ending();
+    // Before hours are spent on a picture that has no place to go.
+    if order.destination == Destination::File
+        && let Err(reason) = check_numbered(&order.folder, &order.title, ending)
+    {
+        return Exported::Failed(reason);
     }
     let start = Instant::now();
     let Ok(world) = pool.install(|| World::build(order.job.clone(), stop)) else {
@@ -200,13 +203,18 @@ fn make(
         Err(error) => return Exported::Failed(error.to_string()),
     };
     let path = order.folder.join(&order.title);
-    let written = encode(&path, order.format, &film.picture(), tone, &texts);
-    let written = written.map_err(|error| error.to_string()).and_then(|bytes| {
-        write_numbered(&order.folder, &order.title, order.format.ending(), &bytes)
-    });
-    match written {
+    let bytes = match encode(&path, order.format, &film.picture(), tone, &texts) {
+        Ok(bytes) => bytes,
+        Err(error) => return Exported::Failed(error.to_string()),
+    };
+    match write_numbered(&order.folder, &order.title, ending, &bytes) {
         Ok(path) => Exported::File { path, told },
-        Err(reason) => Exported::Failed(reason),
+        Err(reason) => {
+            // The disk may have filled up meanwhile.
+            let kept = write_numbered(&std::env::temp_dir(), &order.title, ending, &bytes);
+            let kept = kept.map(|path| format!("; the picture is in {}", path.display()));
+            Exported::Failed(reason + &kept.unwrap_or_default())
+        }
     }
 }
 

@@ -112,7 +112,7 @@ mod tests {
             (0.0421, 0.1, "0.042 ± 0.004 %"),
             (2.13, 0.0, "2.1 %"),
         ] {
-            let noise = Noise { percent, uncertainty, ratio: 0.5 };
+            let noise = Noise { percent, uncertainty, ratio: 0.5, step: None };
             assert_eq!(noise_text(noise), text, "for {percent} ± {uncertainty}");
         }
     }

@@ -3,7 +3,7 @@
 use super::app::App;
 use super::files::Written;
 use super::relocate::relocated;
-use crate::io::output::{OutputFormat, create_file, replace_file};
+use crate::io::output::{OutputFormat, check_writable, create_file, replace_file};
 use crate::io::{scene_file, snapshot};
 use crate::session::Frame;
 use crate::session::develop::encode;
@@ -92,11 +92,7 @@ pub(super) fn write_numbered(
     ending: &str,
     bytes: &[u8],
 ) -> Result<PathBuf, String> {
-    for number in 1..=MOST_SNAPSHOTS {
-        let path = folder.join(format!("{title}-{number:03}.{ending}"));
-        if path.exists() {
-            continue;
-        }
+    for path in free_names(folder, title, ending) {
         match create_file(&path, bytes) {
             Ok(()) => return Ok(path),
             // Another program was quicker with this name.
@@ -104,7 +100,22 @@ pub(super) fn write_numbered(
             Err(error) => return Err(error.to_string()),
         }
     }
-    Err(format!("{}: too many pictures of {title}", folder.display()))
+    Err(no_name(folder, title))
+}
+
+/// Finds out whether [`write_numbered`] could write there now.
+pub(super) fn check_numbered(folder: &Path, title: &str, ending: &str) -> Result<(), String> {
+    let path = free_names(folder, title, ending).next().ok_or_else(|| no_name(folder, title))?;
+    check_writable(&path).map_err(|error| error.to_string())
+}
+
+fn free_names(folder: &Path, title: &str, ending: &str) -> impl Iterator<Item = PathBuf> {
+    let name = move |number| folder.join(format!("{title}-{number:03}.{ending}"));
+    (1..=MOST_SNAPSHOTS).map(name).filter(|path| !path.exists())
+}
+
+fn no_name(folder: &Path, title: &str) -> String {
+    format!("{}: too many pictures of {title}", folder.display())
 }
 
 /// Where snapshots go: the user's pictures, else the home folder, else where the program runs.

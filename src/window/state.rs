@@ -153,9 +153,9 @@ impl Remembered {
 }
 
 impl InterfaceState {
-    /// Threads that render: as chosen, or all processors but one.
+    /// Threads that render: as chosen, or as many as go with a window.
     pub(super) fn n_threads(&self) -> usize {
-        self.n_threads.unwrap_or_else(|| threads::available().saturating_sub(1).max(1))
+        self.n_threads.unwrap_or_else(threads::beside_window)
     }
 
     /// Makes text and controls larger by so many tenths of their usual size.

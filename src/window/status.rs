@@ -222,7 +222,7 @@ mod tests {
         StatusLine {
             work,
             samples: (48, 256),
-            noise: Some(Noise { percent: 2.13, uncertainty: 0.08, ratio: 0.5 }),
+            noise: Some(Noise { percent: 2.13, uncertainty: 0.08, ratio: 0.5, step: None }),
             seconds: 3.9,
             seconds_left: Some(12.9),
             rays_per_second: 8.4e6,

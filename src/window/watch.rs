@@ -51,12 +51,7 @@ impl Watcher {
     /// Watches these files, as they are now, instead of those before.
     pub(super) fn watch(&self, paths: Vec<PathBuf>) {
         let stamps = paths.iter().map(stamp).collect();
-        let mut list = self.shared.lock();
-        list.paths = paths;
-        list.stamps = stamps;
-        list.number += 1;
-        list.has_news = false;
-        drop(list);
+        self.shared.lock().renew(paths, stamps);
         self.shared.changed.notify_one();
     }
 
@@ -82,6 +77,14 @@ impl Drop for Watcher {
             // A panic over there has nothing left to break here.
             let _ = thread.join();
         }
+    }
+}
+
+impl List {
+    fn renew(&mut self, paths: Vec<PathBuf>, stamps: Vec<Stamp>) {
+        (self.paths, self.stamps) = (paths, stamps);
+        self.number += 1;
+        self.has_news = false;
     }
 }
 
@@ -211,8 +214,11 @@ mod tests {
         for round in 0..3 {
             let path = folder.path().join(format!("{round}.toml"));
             std::fs::write(&path, "one").unwrap();
-            watcher.watch(vec![path.clone()]);
+            let mut list = watcher.shared.lock();
+            list.renew(vec![path.clone()], vec![stamp(&path)]);
             std::fs::write(&path, "three").unwrap();
+            drop(list);
+            watcher.shared.changed.notify_one();
             woken.recv_timeout(Duration::from_secs(20)).expect("the change is noticed");
             assert!(watcher.take_news(), "woken without news");
         }

@@ -9,6 +9,8 @@ mod failures;
 mod gallery;
 mod info;
 mod render;
+#[cfg(target_os = "linux")]
+mod scarce;
 mod snapshots;
 
 /// A scene of a ball and a box under two lights, 16 x 9 pixels, 4 samples.

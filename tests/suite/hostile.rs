@@ -2,6 +2,7 @@
 //!
 //! What loads is rendered too, in a few pixels, by every accelerator.
 
+mod dialects;
 mod odd;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};

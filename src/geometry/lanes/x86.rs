@@ -3,7 +3,7 @@
 
 use std::arch::x86_64::*;
 
-use crate::geometry::lanes::{DoubleLanes, Isa, Lanes};
+use crate::geometry::lanes::Lanes;
 
 /// Processors with AVX2 and FMA.
 pub(in crate::geometry) struct Avx2;
@@ -30,7 +30,7 @@ pub(in crate::geometry) struct D8(__m512d);
 #[derive(Clone, Copy)]
 pub(in crate::geometry) struct Pair<L>(L, L);
 
-// SAFETY, for every block below: the types are named only through `Avx2`, which has F4, F8, D4 and
+// SAFETY, for every block below and in the modules of this one: the types are named only through `Avx2`, which has F4, F8, D4 and
 // pairs of them, and `Avx512`, which has all; and code that is generic over those two runs only
 // inside functions that enable their features after asking the processor (`wide_bvh::dispatch`).
 // Loads and stores are of slices whose length is checked first, or of arrays.
@@ -62,6 +62,10 @@ macro_rules! memory {
         }
     };
 }
+
+// After the macros, which they use too.
+mod doubles;
+mod isa;
 
 impl Lanes for F4 {
     const N: usize = 4;
@@ -265,245 +269,5 @@ impl Lanes for Pair<F8> {
     #[inline(always)]
     fn greatest(self) -> f32 {
         self.0.max(self.1).greatest()
-    }
-}
-
-impl DoubleLanes for D4 {
-    type Single = F4;
-
-    operations! {
-        add = _mm256_add_pd;
-        sub = _mm256_sub_pd;
-        mul = _mm256_mul_pd;
-        div = _mm256_div_pd;
-    }
-    #[inline(always)]
-    fn signs(self) -> (u32, u32) {
-        unsafe {
-            let zero = _mm256_setzero_pd();
-            let below = _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, zero);
-            let above = _mm256_cmp_pd::<_CMP_GT_OQ>(self.0, zero);
-            (_mm256_movemask_pd(below) as u32, _mm256_movemask_pd(above) as u32)
-        }
-    }
-    #[inline(always)]
-    fn narrowed(self) -> F4 {
-        F4(unsafe { _mm256_cvtpd_ps(self.0) })
-    }
-}
-
-impl DoubleLanes for D8 {
-    type Single = F8;
-
-    operations! {
-        add = _mm512_add_pd;
-        sub = _mm512_sub_pd;
-        mul = _mm512_mul_pd;
-        div = _mm512_div_pd;
-    }
-    #[inline(always)]
-    fn signs(self) -> (u32, u32) {
-        unsafe {
-            let zero = _mm512_setzero_pd();
-            let below = _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, zero);
-            let above = _mm512_cmp_pd_mask::<_CMP_GT_OQ>(self.0, zero);
-            (u32::from(below), u32::from(above))
-        }
-    }
-    #[inline(always)]
-    fn narrowed(self) -> F8 {
-        F8(unsafe { _mm512_cvtpd_ps(self.0) })
-    }
-}
-
-/// Two halves of f64 lanes, whose f32 lanes join to those of the whole.
-macro_rules! double_pair {
-    ($half:ty, $n:literal, $single:ty, $join:path) => {
-        impl DoubleLanes for Pair<$half> {
-            type Single = $single;
-
-            #[inline(always)]
-            fn add(self, other: Self) -> Self {
-                Self(self.0.add(other.0), self.1.add(other.1))
-            }
-            #[inline(always)]
-            fn sub(self, other: Self) -> Self {
-                Self(self.0.sub(other.0), self.1.sub(other.1))
-            }
-            #[inline(always)]
-            fn mul(self, other: Self) -> Self {
-                Self(self.0.mul(other.0), self.1.mul(other.1))
-            }
-            #[inline(always)]
-            fn div(self, other: Self) -> Self {
-                Self(self.0.div(other.0), self.1.div(other.1))
-            }
-            #[inline(always)]
-            fn signs(self) -> (u32, u32) {
-                let ((below, above), (below_1, above_1)) = (self.0.signs(), self.1.signs());
-                (below | below_1 << $n, above | above_1 << $n)
-            }
-            #[inline(always)]
-            fn narrowed(self) -> $single {
-                $join(self.0.narrowed(), self.1.narrowed())
-            }
-        }
-    };
-}
-
-double_pair!(D4, 4, F8, joined_8);
-double_pair!(D8, 8, F16, joined_16);
-double_pair!(Pair<D4>, 8, Pair<F8>, Pair);
-
-#[inline(always)]
-fn joined_8(lower: F4, upper: F4) -> F8 {
-    F8(unsafe { _mm256_set_m128(upper.0, lower.0) })
-}
-
-#[inline(always)]
-fn joined_16(lower: F8, upper: F8) -> F16 {
-    F16(unsafe {
-        let lower = _mm512_castpd256_pd512(_mm256_castps_pd(lower.0));
-        _mm512_castpd_ps(_mm512_insertf64x4::<1>(lower, _mm256_castps_pd(upper.0)))
-    })
-}
-
-/// Fetches the lines of a value.
-#[inline(always)]
-fn prefetch<T>(value: &T) {
-    const LINE: usize = 64;
-    let start = std::ptr::from_ref(value).cast::<i8>();
-    for offset in (0..size_of::<T>()).step_by(LINE) {
-        // SAFETY: the address is inside the value; a fetch changes nothing but the cache.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(offset)) }
-    }
-}
-
-#[inline(always)]
-fn row(rows: &[[f32; 8]; 6], row: usize) -> F8 {
-    debug_assert!(row < rows.len(), "row {row}");
-    // SAFETY: callers give 0..6, which debug builds check.
-    F8(unsafe { _mm256_loadu_ps(rows.get_unchecked(row).as_ptr()) })
-}
-
-/// Sorts eight keys, and what belongs to them by the lowest three bits of a key.
-///
-/// Source: K. E. Batcher, "Sorting Networks and Their Applications", AFIPS 1968 (bitonic sorter).
-#[inline(always)]
-fn sort(mut keys: __m256i, children: &[u32; 8], to: &mut [u32; 8], references: &mut [u32; 8]) {
-    macro_rules! stage {
-        ($swapped:expr, $greater:literal) => {{
-            let swapped = $swapped;
-            let (low, high) = (_mm256_min_epu32(keys, swapped), _mm256_max_epu32(keys, swapped));
-            keys = _mm256_blend_epi32::<$greater>(low, high);
-        }};
-    }
-    unsafe {
-        stage!(_mm256_shuffle_epi32::<0xB1>(keys), 0b0110_0110);
-        stage!(_mm256_shuffle_epi32::<0x4E>(keys), 0b0011_1100);
-        stage!(_mm256_shuffle_epi32::<0xB1>(keys), 0b0101_1010);
-        stage!(_mm256_permute2x128_si256::<1>(keys, keys), 0b1111_0000);
-        stage!(_mm256_shuffle_epi32::<0x4E>(keys), 0b1100_1100);
-        stage!(_mm256_shuffle_epi32::<0xB1>(keys), 0b1010_1010);
-        let children = _mm256_loadu_si256(children.as_ptr().cast());
-        let sorted = _mm256_permutevar8x32_epi32(children, keys);
-        _mm256_storeu_si256(to.as_mut_ptr().cast(), keys);
-        _mm256_storeu_si256(references.as_mut_ptr().cast(), sorted);
-    }
-}
-
-/// The keys of parameters, with the number of their lane; the highest where the mask is not set.
-#[inline(always)]
-fn keys(enter: F8, hits: __m256i) -> __m256i {
-    unsafe {
-        let rounded = _mm256_or_si256(_mm256_castps_si256(enter.0), _mm256_set1_epi32(7));
-        let keys = _mm256_sub_epi32(_mm256_set1_epi32(0x7FFF_FFFF), rounded);
-        let numbered = _mm256_or_si256(keys, _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
-        _mm256_or_si256(numbered, _mm256_xor_si256(hits, _mm256_set1_epi32(-1)))
-    }
-}
-
-impl Isa for Avx2 {
-    type F4 = F4;
-    type F8 = F8;
-    type F16 = Pair<F8>;
-
-    #[inline(always)]
-    fn row(rows: &[[f32; 8]; 6], index: usize) -> F8 {
-        row(rows, index)
-    }
-    #[inline(always)]
-    fn prefetch<T>(value: &T) {
-        prefetch(value);
-    }
-    #[inline(always)]
-    fn push_sorted(
-        enter: F8,
-        hits: u32,
-        children: &[u32; 8],
-        to: &mut [u32; 8],
-        references: &mut [u32; 8],
-    ) {
-        sort(keys(enter, lanes_of(hits)), children, to, references);
-    }
-    #[inline(always)]
-    fn push_unsorted(hits: u32, children: &[u32; 8], references: &mut [u32; 8]) {
-        // The numbers of the lanes, those of set bits first.
-        const ORDERS: [[u8; 8]; 256] = {
-            let mut orders = [[0; 8]; 256];
-            let mut mask = 0;
-            while mask < 256 {
-                let (mut n, mut lane) = (0, 0);
-                while lane < 8 {
-                    if mask >> lane & 1 == 1 {
-                        orders[mask][n] = lane as u8;
-                        n += 1;
-                    }
-                    lane += 1;
-                }
-                mask += 1;
-            }
-            orders
-        };
-        unsafe {
-            let order = _mm_loadl_epi64(ORDERS[(hits & 255) as usize].as_ptr().cast());
-            let children = _mm256_loadu_si256(children.as_ptr().cast());
-            let packed = _mm256_permutevar8x32_epi32(children, _mm256_cvtepu8_epi32(order));
-            _mm256_storeu_si256(references.as_mut_ptr().cast(), packed);
-        }
-    }
-}
-
-impl Isa for Avx512 {
-    type F4 = F4;
-    type F8 = F8;
-    type F16 = F16;
-
-    #[inline(always)]
-    fn row(rows: &[[f32; 8]; 6], index: usize) -> F8 {
-        row(rows, index)
-    }
-    #[inline(always)]
-    fn prefetch<T>(value: &T) {
-        prefetch(value);
-    }
-    #[inline(always)]
-    fn push_sorted(
-        enter: F8,
-        hits: u32,
-        children: &[u32; 8],
-        to: &mut [u32; 8],
-        references: &mut [u32; 8],
-    ) {
-        let hits = unsafe { _mm256_maskz_set1_epi32(hits as u8, -1) };
-        sort(keys(enter, hits), children, to, references);
-    }
-    #[inline(always)]
-    fn push_unsorted(hits: u32, children: &[u32; 8], references: &mut [u32; 8]) {
-        unsafe {
-            let children = _mm256_loadu_si256(children.as_ptr().cast());
-            let packed = _mm256_maskz_compress_epi32(hits as u8, children);
-            _mm256_storeu_si256(references.as_mut_ptr().cast(), packed);
-        }
     }
 }

@@ -1,5 +1,7 @@
 //! Cubes, creases, and everything that could make a normal NaN.
 
+use std::collections::HashSet;
+
 use glam::vec3;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -155,5 +157,29 @@ proptest! {
                 prop_assert!((length - 1.0).abs() < 1e-6, "length {}", length);
             }
         }
+    }
+}
+
+/// Where very many faces meet, each keeps its own normal and is compared with the one before.
+#[test]
+fn faces_at_a_crowded_vertex_are_not_compared_with_each_other() {
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    let most = MAX_FACES_AT_CREASE;
+    for (n, expected) in [(most, 2), (most + 2, most + 2)] {
+        let triangles: Vec<[u32; 3]> = (0..n / 2).flat_map(|_| [[0, 1, 2], [0, 2, 3]]).collect();
+        let found = smooth(&positions, &triangles, 1.0);
+        let at_origin: HashSet<u32> = found.ids.iter().map(|ids| ids[0]).collect();
+        assert_eq!(at_origin.len(), expected, "normals of {n} faces");
+    }
+}
+
+/// Many vertices with many faces each would take minutes.
+#[test]
+fn a_mesh_of_crowded_vertices_looks_for_fewer_creases() {
+    for (n_vertices, expected) in [(60, MAX_FACES_AT_CREASE), (600, MAX_FACES_AT_CREASE / 2)] {
+        let fans = (0..n_vertices as u32).step_by(3).map(|v| [v, v + 1, v + 2]);
+        let triangles: Vec<[u32; 3]> = fans.flat_map(|ids| [ids; MAX_FACES_AT_CREASE]).collect();
+        let around = CornersAround::new(n_vertices, &triangles);
+        assert_eq!(max_faces_at_crease(n_vertices, &around), expected, "{n_vertices} vertices");
     }
 }

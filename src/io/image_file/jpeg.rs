@@ -6,11 +6,11 @@ use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
 use super::{ImageFileError, check_size, damaged, linear_by_code, texels_of};
-use crate::io::crash;
 use crate::scene::image::Image;
 
+pub(super) const FORMAT: &str = "JPEG";
+
 pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageFileError> {
-    let format = "JPEG";
     // Strict: what is missing is an error. The size is checked here, in our words.
     let options = DecoderOptions::default()
         .set_strict_mode(true)
@@ -18,9 +18,9 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageFileError> {
         .set_max_height(usize::from(u16::MAX))
         .jpeg_set_out_colorspace(ColorSpace::RGB);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
-    decoder.decode_headers().map_err(|reason| damaged(format, &reason))?;
+    decoder.decode_headers().map_err(|reason| damaged(FORMAT, &reason))?;
     let (Some(info), Some(colors)) = (decoder.info(), decoder.input_colorspace()) else {
-        return Err(damaged(format, &"it has no header"));
+        return Err(damaged(FORMAT, &"it has no header"));
     };
     let (width, height) = (u32::from(info.width), u32::from(info.height));
     // Components of every kind that a scan may hold, and what is made of them.
@@ -29,13 +29,9 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageFileError> {
         return Err(ImageFileError::UnsupportedColors { colors: format!("{colors:?}") });
     }
     if !has_end(bytes) {
-        return Err(damaged(format, &"it ends before its last marker"));
+        return Err(damaged(FORMAT, &"it ends before its last marker"));
     }
-    // On sampling factors that no encoder writes, the decoder panics.
-    let decoded = crash::contain(|| decoder.decode());
-    let samples = decoded
-        .ok_or_else(|| damaged(format, &"the decoder cannot make sense of it"))?
-        .map_err(|reason| damaged(format, &reason))?;
+    let samples = decoder.decode().map_err(|reason| damaged(FORMAT, &reason))?;
     let table = linear_by_code(u16::from(u8::MAX));
     let texels =
         texels_of(&samples, ColorSpace::RGB.num_components(), |code| table[usize::from(code)]);

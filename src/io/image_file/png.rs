@@ -5,8 +5,10 @@ use std::io::Cursor;
 use super::{ImageFileError, check_size, damaged, linear_by_code, texels_of};
 use crate::scene::image::Image;
 
+pub(super) const FORMAT: &str = "PNG";
+
 pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageFileError> {
-    let fail = |reason: png::DecodingError| damaged("PNG", &reason);
+    let fail = |reason: png::DecodingError| damaged(FORMAT, &reason);
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     decoder.set_ignore_text_chunk(true);
     decoder.set_ignore_iccp_chunk(true);
@@ -22,7 +24,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageFileError> {
         return Err(ImageFileError::TooLarge { width, height });
     };
     let mut samples = Vec::new();
-    samples.try_reserve_exact(n_bytes).map_err(|error| damaged("PNG", &error))?;
+    samples.try_reserve_exact(n_bytes).map_err(|error| damaged(FORMAT, &error))?;
     samples.resize(n_bytes, 0);
     reader.next_frame(&mut samples).map_err(fail)?;
     // What follows the pixels tells whether the file is complete.

@@ -157,6 +157,19 @@ fn crc(bytes: &[u8]) -> u32 {
     !crc
 }
 
+/// Its second colour has one channel.
+#[test]
+fn a_palette_that_no_encoder_writes_is_damage() {
+    let png = png_file([2, 1], ColorType::Indexed, BitDepth::Eight, &[0, 1]);
+    let at = png.windows(4).position(|name| name == b"PLTE").unwrap();
+    let palette = b"PLTE\xff\0\0\xff";
+    let (length, checksum) = (4_u32.to_be_bytes(), crc(palette).to_be_bytes());
+    let rest = &png[at + palette.len() + 2 + checksum.len()..];
+    let bytes = [&png[..at - 4], &length, palette, &checksum, rest].concat();
+    let message = decode(&bytes).unwrap_err().to_string();
+    assert_eq!(message, "damaged or incomplete PNG: the decoder cannot make sense of it");
+}
+
 #[test]
 fn a_file_cut_short_anywhere_is_an_error() {
     let samples: Vec<u8> = (0..48 * 48).map(|i| (i * i) as u8).collect();

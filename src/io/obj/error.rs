@@ -106,6 +106,16 @@ pub enum ObjError {
         limit: usize,
     },
 
+    /// Faces that would take minutes to cut into triangles.
+    #[error(
+        "line {line}: the faces up to here are too intricate to be cut into triangles; save the \
+         mesh as triangles"
+    )]
+    TooIntricate {
+        /// The face at which it was given up.
+        line: usize,
+    },
+
     /// More than the machine can hold.
     #[error("line {line}: the mesh up to here {error}")]
     NoMemory {
@@ -114,6 +124,10 @@ pub enum ObjError {
         /// How much is needed, and how much there is.
         error: NoMemory,
     },
+
+    /// A mesh that is there already, and more than the machine can hold with other normals too.
+    #[error("the mesh once more, for another crease angle, {0}")]
+    NoMemoryForCopy(NoMemory),
 
     /// Nobody wants the mesh any more.
     #[error("cancelled")]

@@ -2,6 +2,7 @@
 
 use super::ObjError;
 use super::cursor::Cursor;
+use super::polygon::{MAX_CONCAVE_CORNERS, Uncut};
 use super::reader::Reader;
 use crate::geometry::mesh::ABSENT;
 use crate::io::excerpt;
@@ -109,18 +110,21 @@ impl Reader<'_> {
     fn push_polygon(&mut self) -> Result<(), ObjError> {
         let mut cutter = std::mem::take(&mut self.cutter);
         let points = self.corners.iter().map(|c| self.file.positions[c.position as usize]);
-        let was_cut = cutter.cut(points);
-        if was_cut {
+        let cut = cutter.cut(points);
+        if cut.is_ok() {
             for triangle in cutter.triangles() {
                 self.push_triangle(*triangle);
             }
         }
         self.cutter = cutter;
-        if was_cut {
-            return Ok(());
-        }
-        let (line, limit) = (self.cursor.line(), super::polygon::MAX_CONCAVE_CORNERS);
-        Err(ObjError::TooMany { line, what: "corners in a face that is not convex", limit })
+        let line = self.cursor.line();
+        cut.map_err(|reason| match reason {
+            Uncut::TooLarge => {
+                let what = "corners in a face that is not convex";
+                ObjError::TooMany { line, what, limit: MAX_CONCAVE_CORNERS }
+            }
+            Uncut::TooIntricate => ObjError::TooIntricate { line },
+        })
     }
 
     #[inline]

@@ -20,10 +20,14 @@ use glam::{Vec2, Vec3};
 
 use crate::geometry::mesh::Mesh;
 use crate::geometry::normals;
+use crate::io::memory;
 use crate::io::progress::{Step, Watch};
 use crate::scene::description::NormalsKind;
 pub use error::ObjError;
 use reader::Reader;
+
+/// Bytes a triangle that computing shading normals takes.
+const NORMALS_A_TRIANGLE: usize = 80;
 
 /// What an OBJ file holds, its faces cut into triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -77,35 +81,10 @@ pub fn load_mesh<'a>(
     watch: impl Into<Watch<'a>>,
 ) -> Result<(Mesh, MeshNotes), ObjError> {
     let watch = watch.into();
-    let file = parse(bytes, watch)?;
+    let mut file = parse(bytes, watch)?;
+    let notes = file.take_notes();
     watch.tell(Step::Normals);
-    let crease_angle = crease_angle_deg.to_radians();
-    let normals = match kind {
-        NormalsKind::Flat => normals::Normals::default(),
-        NormalsKind::Smooth => normals::smooth(&file.positions, &file.triangles, crease_angle),
-        NormalsKind::File => normals::complete(
-            &file.positions,
-            &file.triangles,
-            normals::Normals { normals: file.normals, ids: file.normal_ids },
-            crease_angle,
-        ),
-    };
-    let mesh = Mesh {
-        positions: file.positions,
-        triangles: file.triangles,
-        normals: normals.normals,
-        normal_ids: normals.ids,
-        uvs: file.uvs,
-        uv_ids: file.uv_ids,
-        slots: file.slots,
-    };
-    let notes = MeshNotes {
-        slot_names: file.slot_names,
-        libraries: file.libraries,
-        n_faces: file.n_faces,
-        warnings: file.warnings,
-    };
-    Ok((mesh, notes))
+    Ok((file.into_mesh(kind, crease_angle_deg), notes))
 }
 
 /// Reads the text of an OBJ file.
@@ -114,4 +93,62 @@ pub fn load_mesh<'a>(
 /// As [`load_mesh`].
 pub fn parse<'a>(bytes: &[u8], watch: impl Into<Watch<'a>>) -> Result<ObjFile, ObjError> {
     Reader::new(bytes, watch.into()).read()
+}
+
+impl ObjFile {
+    /// What it says beside its mesh; it is without it then.
+    pub fn take_notes(&mut self) -> MeshNotes {
+        MeshNotes {
+            slot_names: std::mem::take(&mut self.slot_names),
+            libraries: std::mem::take(&mut self.libraries),
+            n_faces: self.n_faces,
+            warnings: std::mem::take(&mut self.warnings),
+        }
+    }
+
+    /// Its mesh with shading normals; `crease_angle_deg` as in [`load_mesh`].
+    pub fn into_mesh(self, kind: NormalsKind, crease_angle_deg: f64) -> Mesh {
+        let crease_angle = crease_angle_deg.to_radians();
+        let normals = match kind {
+            NormalsKind::Flat => normals::Normals::default(),
+            NormalsKind::Smooth => normals::smooth(&self.positions, &self.triangles, crease_angle),
+            NormalsKind::File => normals::complete(
+                &self.positions,
+                &self.triangles,
+                normals::Normals { normals: self.normals, ids: self.normal_ids },
+                crease_angle,
+            ),
+        };
+        Mesh {
+            positions: self.positions,
+            triangles: self.triangles,
+            normals: normals.normals,
+            normal_ids: normals.ids,
+            uvs: self.uvs,
+            uv_ids: self.uv_ids,
+            slots: self.slots,
+        }
+    }
+
+    /// A copy, for other shading normals of the same mesh.
+    ///
+    /// # Errors
+    /// When it would not fit into memory.
+    pub fn try_clone(&self) -> Result<Self, ObjError> {
+        memory::check(self.bytes_to_come()).map_err(ObjError::NoMemoryForCopy)?;
+        Ok(self.clone())
+    }
+
+    /// Bytes that making a mesh of it takes beside its arrays: as much again, where they grow or
+    /// are copied, and the shading normals.
+    fn bytes_to_come(&self) -> u64 {
+        let used = size_of_val(&self.positions[..])
+            + size_of_val(&self.uvs[..])
+            + size_of_val(&self.normals[..])
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.uv_ids[..])
+            + size_of_val(&self.normal_ids[..])
+            + size_of_val(&self.slots[..]);
+        (used + NORMALS_A_TRIANGLE * self.triangles.len()) as u64
+    }
 }

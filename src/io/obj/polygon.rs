@@ -9,6 +9,10 @@ use std::collections::VecDeque;
 /// Corners of a polygon that is not convex: ears of larger ones would take minutes to find.
 pub(super) const MAX_CONCAVE_CORNERS: usize = 100_000;
 
+/// Corners that are looked at in search of ears, in a whole file: some seconds of it. What anybody
+/// drew takes a few a corner; only long teeth beside one another take their square.
+const MAX_LOOKS: u64 = 1 << 30;
+
 /// Sine of the angle by which a corner of a convex polygon may turn back: room for the rounding
 /// of corners that lie on a straight line.
 const STRAIGHT: f64 = 1e-6;
@@ -29,6 +33,17 @@ pub(super) struct PolygonCutter {
     /// Corners that point inwards or are straight, by ascending x: only they can lie in an ear.
     inward: Vec<u32>,
     queue: VecDeque<u32>,
+    /// Corners looked at so far, in all polygons.
+    n_looks: u64,
+}
+
+/// Why a polygon was not cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Uncut {
+    /// It has more than [`MAX_CONCAVE_CORNERS`], and is not convex.
+    TooLarge,
+    /// It, or those before it, take too long.
+    TooIntricate,
 }
 
 impl PolygonCutter {
@@ -37,21 +52,20 @@ impl PolygonCutter {
         &self.triangles
     }
 
-    /// Cuts a polygon of three corners or more. False: too large, and not convex.
-    pub(super) fn cut(&mut self, points: impl Iterator<Item = Vec3>) -> bool {
+    /// Cuts a polygon of three corners or more.
+    pub(super) fn cut(&mut self, points: impl Iterator<Item = Vec3>) -> Result<(), Uncut> {
         self.points.clear();
         self.points.extend(points);
         self.triangles.clear();
         self.flatten();
         if self.is_convex() {
             self.cut_fan();
-            return true;
+            return Ok(());
         }
         if MAX_CONCAVE_CORNERS < self.points.len() {
-            return false;
+            return Err(Uncut::TooLarge);
         }
-        self.cut_ears();
-        true
+        self.cut_ears()
     }
 
     /// Projects the polygon along the largest part of its mean normal, so that it turns
@@ -99,11 +113,14 @@ impl PolygonCutter {
     /// Cuts ears off until a triangle is left (G. Meisters, "Polygons Have Ears", American
     /// Mathematical Monthly 82(6), 1975). Only the neighbours of a corner that was cut can become
     /// ears by it, so that each corner is tried a few times in all.
-    fn cut_ears(&mut self) {
+    fn cut_ears(&mut self) -> Result<(), Uncut> {
         self.start_ring();
         let n = self.flat.len();
         let mut n_rounds = 0;
         while self.triangles.len() < n - 2 {
+            if MAX_LOOKS < self.n_looks {
+                return Err(Uncut::TooIntricate);
+            }
             if let Some(corner) = self.queue.pop_front() {
                 if !self.is_cut[corner as usize] && self.is_ear(corner) {
                     self.cut_off(corner);
@@ -116,6 +133,7 @@ impl PolygonCutter {
                 self.cut_rest();
             }
         }
+        Ok(())
     }
 
     fn start_ring(&mut self) {
@@ -146,31 +164,29 @@ impl PolygonCutter {
     }
 
     /// Whether a corner's triangle has an area and nothing of the outline in it.
-    fn is_ear(&self, corner: u32) -> bool {
+    fn is_ear(&mut self, corner: u32) -> bool {
         if self.turn(corner) <= 0.0 {
             return false;
         }
         let ids = self.triangle_at(corner);
         let [a, b, c] = ids.map(|i| self.flat[i as usize]);
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        let start = self.inward.partition_point(|i| self.flat[*i as usize].x < low.x);
-        for other in &self.inward[start..] {
+        let x = |i: &u32| self.flat[*i as usize].x;
+        let start = self.inward.partition_point(|i| x(i) < low.x);
+        let end = self.inward.partition_point(|i| x(i) <= high.x);
+        let near = &self.inward[start..end];
+        let blocking = near.iter().position(|other| {
             let p = self.flat[*other as usize];
-            if high.x < p.x {
-                break;
-            }
             // Corners that a bridge to a hole visits twice do not block each other.
-            let blocks = !self.is_cut[*other as usize]
+            !self.is_cut[*other as usize]
                 && ![a, b, c].contains(&p)
                 && (b - a).perp_dot(p - a) >= 0.0
                 && (c - b).perp_dot(p - b) >= 0.0
                 && (a - c).perp_dot(p - c) >= 0.0
-                && self.turn(*other) <= 0.0;
-            if blocks {
-                return false;
-            }
-        }
-        true
+                && self.turn(*other) <= 0.0
+        });
+        self.n_looks += blocking.unwrap_or(near.len()) as u64;
+        blocking.is_none()
     }
 
     fn cut_off(&mut self, corner: u32) {

@@ -23,9 +23,6 @@ const MAX_COORDINATE: f32 = 1e12;
 /// Bytes of the file between two looks at what else goes on.
 const BETWEEN_LOOKS: usize = 4 << 20;
 
-/// Bytes a triangle that computing shading normals takes.
-const NORMALS_A_TRIANGLE: usize = 80;
-
 /// A file half read.
 pub(super) struct Reader<'a> {
     pub(super) cursor: Cursor<'a>,
@@ -90,18 +87,8 @@ impl<'a> Reader<'a> {
             return Err(ObjError::Cancelled);
         }
         self.watch.tell(Step::Reading(self.cursor.share()));
-        let file = &self.file;
-        let used = size_of_val(&file.positions[..])
-            + size_of_val(&file.uvs[..])
-            + size_of_val(&file.normals[..])
-            + size_of_val(&file.triangles[..])
-            + size_of_val(&file.uv_ids[..])
-            + size_of_val(&file.normal_ids[..])
-            + size_of_val(&file.slots[..]);
-        // Arrays double as they grow, and shading normals are still to come.
-        let to_come = used + NORMALS_A_TRIANGLE * file.triangles.len();
         let line = self.cursor.line();
-        memory::check(to_come as u64).map_err(|error| ObjError::NoMemory { line, error })
+        memory::check(self.file.bytes_to_come()).map_err(|error| ObjError::NoMemory { line, error })
     }
 
     #[inline]
@@ -341,16 +328,22 @@ const IGNORED_KEYWORDS: [&[u8]; 34] = [
 
 /// The names after `mtllib`: several are separated by blanks, but one may also hold blanks. A name
 /// ends with `.mtl`, or at the end of the line.
-fn split_library_names(mut names: &str) -> Vec<&str> {
-    let mut found = Vec::new();
-    while !names.is_empty() {
-        let lower = names.to_ascii_lowercase();
-        let end = [".mtl ", ".mtl\t"].iter().filter_map(|mark| lower.find(mark)).min();
-        let end = end.map_or(names.len(), |start| start + ".mtl".len());
-        found.push(&names[..end]);
-        names = names[end..].trim_start();
-    }
-    found
+fn split_library_names(names: &str) -> impl Iterator<Item = &str> {
+    const ENDING: &str = ".mtl";
+    let is_ending = move |at: usize| {
+        let (ending, rest) = names.as_bytes()[at..].split_at(ENDING.len());
+        ending.eq_ignore_ascii_case(ENDING.as_bytes()) && matches!(rest.first(), Some(b' ' | b'\t'))
+    };
+    let mut start = 0;
+    std::iter::from_fn(move || {
+        start += names[start..].len() - names[start..].trim_start().len();
+        let last = names.len().saturating_sub(ENDING.len());
+        let end = (start..last).find(|at| is_ending(*at));
+        let end = end.map_or(names.len(), |at| at + ENDING.len());
+        let name = &names[start..end];
+        start = end;
+        (!name.is_empty()).then_some(name)
+    })
 }
 
 fn count_without_area(file: &ObjFile) -> usize {

@@ -50,8 +50,7 @@ impl Point {
 
     /// The noise to expect at so many samples.
     fn percent_at(&self, samples: f64) -> f64 {
-        let doublings = (samples / self.samples).log2();
-        self.noise.percent * self.noise.ratio.powf(0.5 * doublings)
+        self.noise.percent_after(samples / self.samples)
     }
 
     /// The noise with its uncertainty taken off, or added: never 0.
@@ -288,7 +287,7 @@ mod tests {
     }
 
     fn noise(percent: f64, ratio: f64) -> Noise {
-        Noise { percent, uncertainty: 0.1, ratio }
+        Noise { percent, uncertainty: 0.1, ratio, step: None }
     }
 
     #[test]

@@ -65,7 +65,7 @@ pub(super) fn render_with(ui: &mut egui::Ui, bench: &mut Bench, noise: &[(u32, N
 }
 
 pub(super) const fn noise(percent: f64) -> Noise {
-    Noise { percent, uncertainty: 0.1, ratio: 0.5 }
+    Noise { percent, uncertainty: 0.1, ratio: 0.5, step: None }
 }
 pub(super) const ALL: [Panel; 7] = [CAMERA, LIGHTS, MATERIALS, TEXTURES, OBJECTS, DISPLAY, RENDER];
 

@@ -21,7 +21,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// A window with the box open, set to a small picture in that folder.
-fn with_box(scene: &Path, folder: &Path) -> Harness<'static, App> {
+pub(super) fn with_box(scene: &Path, folder: &Path) -> Harness<'static, App> {
     let mut harness = window(scene, [1400.0, 900.0]);
     harness.key_press_modifiers(Modifiers::SHIFT, Key::F12);
     harness.run_steps(3);
@@ -127,7 +127,7 @@ fn a_picture_goes_to_the_clipboard_and_a_missing_folder_is_told() {
     harness.get_by_role_and_label(Role::Button, "Render").click();
     wait_until(&mut harness, |app| app.exporter.progress().is_some());
     wait_until(&mut harness, |app| app.exporter.progress().is_none());
-    assert!(harness.query_by_label_contains("is no folder").is_some(), "nobody says so");
+    assert!(harness.query_by_label_contains("there is no folder").is_some(), "nobody says so");
     harness.key_press(Key::Escape);
     harness.run_steps(2);
 

@@ -17,7 +17,7 @@ fn is_settled(app: &App) -> bool {
 }
 
 /// Lets frames pass until something is said.
-fn wait_for_words(harness: &mut Harness<'_, App>, words: &str) {
+pub(super) fn wait_for_words(harness: &mut Harness<'_, App>, words: &str) {
     let since = Instant::now();
     while harness.query_by_label_contains(words).is_none() {
         assert!(since.elapsed() < PATIENCE, "nobody says {words:?}");
@@ -92,8 +92,8 @@ fn a_copy_that_cannot_be_kept_is_told_once_and_tried_again() {
     wait_for_words(&mut harness, "cannot keep a copy");
     harness.key_press(egui::Key::Escape);
     harness.run_steps(160);
-    let is_told = harness.query_by_label_contains("cannot keep a copy").is_some();
-    assert!(!is_told, "told again, though it was read");
+    let is_told_again = harness.query_by_label_contains("cannot keep a copy").is_some();
+    assert!(!is_told_again, "told again after it was read");
     // Nothing is edited meanwhile: what failed is tried again.
     std::fs::create_dir(&own).unwrap();
     let since = Instant::now();

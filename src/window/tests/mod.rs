@@ -2,6 +2,7 @@
 
 mod asking;
 mod bench;
+mod disks;
 mod editing;
 mod every_control;
 mod export;

@@ -156,31 +156,6 @@ fn a_picture_whose_place_is_gone_when_it_is_done_is_kept_elsewhere() {
     assert_eq!(super::Png::read(&bytes).width, 8, "the picture that was kept");
 }
 
-/// Where nobody asks for a number of threads, few do; where somebody does, it is these or none.
-/// Limits of address space stand for any system that runs out of threads.
-#[cfg(target_os = "linux")]
-#[test]
-fn a_system_without_threads_or_memory_is_told_with_what_would_help() {
-    let place = Place::with_ball();
-    let limited = |kibibytes: u32, options: &str| {
-        let script =
-            format!("ulimit -v {kibibytes}; exec \"$0\" render ball.toml -o a.png {options}");
-        let mut command = std::process::Command::new("sh");
-        command.args(["-c", &script, env!("CARGO_BIN_EXE_penumbra")]).current_dir(place.path(""));
-        Run::of(&mut command)
-    };
-    let run = limited(1 << 20, "-t 1024");
-    let is_told = run.stderr.contains("1024 threads") && run.stderr.contains("smaller number");
-    assert!(run.status == Some(1) && is_told, "{:?}: {}", run.status, run.stderr);
-    let run = limited(1 << 20, "--width 4000 --height 3000");
-    let needs = "error: a picture of 4000 x 3000 pixels takes 1.6 GiB of memory, and ";
-    let is_told = run.stderr.starts_with(needs) && run.stderr.contains("MiB are free");
-    assert!(run.status == Some(1) && is_told, "{:?}: {}", run.status, run.stderr);
-    assert_eq!(files_in(&place), ["ball.toml"], "a picture of nothing");
-    let run = limited(1 << 20, "");
-    assert_eq!(run.status, Some(0), "{}", run.stderr);
-}
-
 #[cfg(unix)]
 #[test]
 fn a_killed_run_leaves_the_old_file_or_the_new_one() {
@@ -346,6 +321,18 @@ fn a_mistake_of_the_program_leaves_a_report() {
     assert!(!place.path("a.png").exists(), "a picture of a mistake");
 }
 
+/// The decoder panics on this palette.
+#[test]
+fn a_decoder_that_gives_up_is_no_mistake_of_the_program() {
+    let place = Place::new();
+    place.write("t.png", include_bytes!("../../corpus/snapshot/palette-of-odd-length"));
+    let texture = "[[textures]]\nname = 't'\ntype = 'image'\nfile = 't.png'\n";
+    place.write("s.toml", format!("{BALL}{texture}").as_bytes());
+    let error = place.fails(1, &["info", "s.toml"]);
+    let is_plain = error.lines().count() == 1 && error.contains("t.png: damaged or incomplete PNG");
+    assert!(is_plain, "{error}");
+}
+
 #[test]
 fn help_and_version_are_no_errors() {
     let place = Place::new();
@@ -356,7 +343,7 @@ fn help_and_version_are_no_errors() {
     }
 }
 
-fn files_in(place: &Place) -> Vec<String> {
+pub(super) fn files_in(place: &Place) -> Vec<String> {
     let entries = std::fs::read_dir(place.path("")).unwrap();
     let mut names: Vec<String> =
         entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();

@@ -8,7 +8,7 @@ use super::*;
 
 fn cut(points: &[Vec3]) -> Vec<[u32; 3]> {
     let mut cutter = PolygonCutter::default();
-    assert!(cutter.cut(points.iter().copied()));
+    assert_eq!(cutter.cut(points.iter().copied()), Ok(()));
     cutter.triangles().to_vec()
 }
 
@@ -114,7 +114,23 @@ fn too_large_a_concave_outline_is_refused() {
     let zigzag = |i: usize| vec3(i as f32, (i % 2) as f32, 0.0);
     let n = MAX_CONCAVE_CORNERS + 1;
     let points = (0..n).map(zigzag).chain([vec3(n as f32, -9.0, 0.0)]);
-    assert!(!PolygonCutter::default().cut(points));
+    assert_eq!(PolygonCutter::default().cut(points), Err(Uncut::TooLarge));
+}
+
+/// Teeth beside one another: every tip is looked at for every other.
+#[test]
+fn what_a_file_takes_to_cut_is_limited() {
+    let tooth = |i: u16| vec3(if i.is_multiple_of(2) { 0.0 } else { 9.0 }, f32::from(i), 0.0);
+    let back = [vec3(-1.0, 1000.0, 0.0), vec3(-1.0, -1.0, 0.0)];
+    let comb: Vec<Vec3> = (0..1000).map(tooth).chain(back).collect();
+    let mut cutter = PolygonCutter::default();
+    assert_eq!(cutter.cut(comb.iter().copied()), Ok(()));
+    let n_looks = cutter.n_looks;
+    assert!((100_000..10_000_000).contains(&n_looks), "{n_looks} looks at a comb");
+    cutter.n_looks = MAX_LOOKS - n_looks / 2;
+    assert_eq!(cutter.cut(comb.iter().copied()), Err(Uncut::TooIntricate));
+    let square = in_plane(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+    assert_eq!(cutter.cut(square.into_iter()), Ok(()), "a convex one takes no looks");
 }
 
 proptest! {
