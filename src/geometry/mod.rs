@@ -134,6 +134,8 @@ impl Geometry {
     ) -> Result<Self, Stopped> {
         /// Fewer objects are tested one by one, each by all rays of a batch that touch its box.
         const TREE_LIMIT: usize = 48;
+        /// Of the test of an object, in steps of their tree.
+        const OBJECT_COST: f32 = 1.5;
         for instance in &instances {
             if let Shape::Mesh(mesh) = instance.shape() {
                 mesh.build_tree(kind, stop)?;
@@ -143,7 +145,9 @@ impl Geometry {
         let (bounded, mut listed): (Vec<u32>, Vec<u32>) =
             (0..instances.len() as u32).partition(bounded);
         let split = match kind {
-            AcceleratorKind::WideBvh | AcceleratorKind::KdTree => Some(Split::SurfaceArea),
+            AcceleratorKind::WideBvh | AcceleratorKind::KdTree => {
+                Some(Split::SurfaceArea { item_cost: OBJECT_COST })
+            }
             AcceleratorKind::KdMidpoint => Some(Split::Midpoint),
             AcceleratorKind::BruteForce => None,
         };

@@ -17,13 +17,10 @@ use crate::geometry::kd_tree::traverse::MAX_DEPTH;
 use crate::geometry::kd_tree::{KdTree, Node};
 use crate::math::Aabb;
 
-/// Cost of one traversal step and of one item's test.
-const COST_STEP: f32 = 1.0;
-const COST_ITEM: f32 = 1.5;
-/// A cut that leaves one side empty costs this share.
+/// A cut that leaves one side empty counts as this share of its tests.
 const EMPTY_BONUS: f32 = 0.8;
 /// Nodes of more items are cut at bins.
-const EXACT_LIMIT: usize = 48;
+const EXACT_LIMIT: usize = 16;
 const N_BINS: usize = 32;
 /// Subtrees of more items are built in parallel.
 const PARALLEL_LIMIT: usize = 4096;
@@ -32,12 +29,16 @@ const COPIES_AN_ITEM: usize = 16;
 const FREE_COPIES: usize = 1024;
 
 /// How cuts are chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Split {
     /// In the middle of the longest side.
     Midpoint,
-    /// Where the surface area heuristic expects the least work.
-    SurfaceArea,
+    /// Where the surface area heuristic expects the least work, if the test of an item costs as much as
+    /// so many steps from node to node.
+    SurfaceArea {
+        /// Above 0.
+        item_cost: f32,
+    },
 }
 
 /// An item of the tree and the part of its bounds inside the current cell.
@@ -98,7 +99,8 @@ struct Allowance {
 struct Cut {
     axis: usize,
     plane: f32,
-    cost: f32,
+    /// Tests to expect below it.
+    n_tests: f32,
 }
 
 impl<C: Fn(u32, Aabb) -> Aabb + Sync> Builder<'_, C> {
@@ -108,12 +110,12 @@ impl<C: Fn(u32, Aabb) -> Aabb + Sync> Builder<'_, C> {
         if is_large {
             Stopped::check(self.stop)?;
         }
-        let leaf_cost = COST_ITEM * items.len() as f32;
         let (cut, n_bad) = match self.split {
             Split::Midpoint => (midpoint(&items, &cell), 0),
-            Split::SurfaceArea => {
+            Split::SurfaceArea { item_cost } => {
                 let cut = best_cut(&items, &cell);
-                let is_bad = cut.is_none_or(|cut| cut.cost >= leaf_cost);
+                let n_saved = |cut: Cut| items.len() as f32 - cut.n_tests;
+                let is_bad = cut.is_none_or(|cut| item_cost * n_saved(cut) <= 1.0);
                 (cut, n_bad + u32::from(is_bad))
             }
         };
@@ -181,7 +183,7 @@ fn midpoint(items: &[Item], cell: &Aabb) -> Option<Cut> {
     let axis = longest_axis(extent.to_array());
     let plane = cell.center()[axis];
     let is_inside = cell.min[axis] < plane && plane < cell.max[axis];
-    (items.len() > LEAF_ITEMS && is_inside).then_some(Cut { axis, plane, cost: 0.0 })
+    (items.len() > LEAF_ITEMS && is_inside).then_some(Cut { axis, plane, n_tests: 0.0 })
 }
 
 fn longest_axis(extent: [f32; 3]) -> usize {
@@ -189,7 +191,7 @@ fn longest_axis(extent: [f32; 3]) -> usize {
     if extent[2] > extent[xy] { 2 } else { xy }
 }
 
-/// The cut of least expected cost, in units of the cell's own.
+/// The cut below which the fewest tests are to be expected of a ray through the cell.
 fn best_cut(items: &[Item], cell: &Aabb) -> Option<Cut> {
     if items.is_empty() || cell.half_area() <= 0.0 {
         return None;
@@ -215,9 +217,9 @@ fn consider(cell: &Aabb, axis: usize, plane: f32, counts: [usize; 2], best: &mut
     let scale = 1.0 / cell.half_area();
     let work = lower.half_area() * counts[0] as f32 + upper.half_area() * counts[1] as f32;
     let bonus = if counts.contains(&0) { EMPTY_BONUS } else { 1.0 };
-    let cost = COST_STEP + bonus * COST_ITEM * scale * work;
-    if best.is_none_or(|b| cost < b.cost) {
-        *best = Some(Cut { axis, plane, cost });
+    let n_tests = bonus * scale * work;
+    if best.is_none_or(|b| n_tests < b.n_tests) {
+        *best = Some(Cut { axis, plane, n_tests });
     }
 }
 
