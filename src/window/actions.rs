@@ -31,6 +31,9 @@ impl App {
                 | Action::Gallery
                 | Action::TogglePanel
                 | Action::FullScreen
+                | Action::LargerText
+                | Action::SmallerText
+                | Action::UsualText
                 | Action::Help
                 | Action::Cancel
         );
@@ -90,6 +93,12 @@ impl App {
             Action::FullScreen => {
                 let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
                 ctx.send_viewport_cmd(ViewportCommand::Fullscreen(!full));
+            }
+            Action::LargerText => self.enlarge_text(ctx, 1.0),
+            Action::SmallerText => self.enlarge_text(ctx, -1.0),
+            Action::UsualText => {
+                self.interface.scale = 1.0;
+                self.enlarge_text(ctx, 0.0);
             }
             Action::Help => self.interface.help_shown = !self.interface.help_shown,
             Action::Cancel => self.cancel(ctx),
@@ -176,6 +185,12 @@ impl App {
             Some((Purpose::SaveScene, path)) => self.save_to(ctx, path),
             Some((Purpose::PictureFolder, path)) => self.interface.export.folder = Some(path),
         }
+    }
+
+    fn enlarge_text(&mut self, ctx: &egui::Context, tenths: f32) {
+        self.interface.enlarge(tenths);
+        ctx.set_zoom_factor(self.interface.scale);
+        self.toasts.say(format!("text at {:.0} %", self.interface.scale * 100.0));
     }
 
     fn cancel(&mut self, ctx: &egui::Context) {

@@ -11,6 +11,7 @@ use super::keys_file;
 use super::lens_overlay::LensOverlay;
 use super::picture::PictureDisplay;
 use super::probe::Probe;
+use super::recent::RecentPictures;
 use super::recovery::Recovery;
 use super::settings::Settings;
 use super::start::{Thumbnails, drop_hint};
@@ -47,6 +48,7 @@ pub(super) struct App {
     pub(super) export_wanted: bool,
     pub(super) exporter: Exporter,
     pub(super) thumbnails: Thumbnails,
+    pub(super) recent_pictures: RecentPictures,
     pub(super) keys: Keys,
     /// Where keys of one's own are read from, if there is such a place.
     pub(super) keys_file: Option<PathBuf>,
@@ -117,6 +119,9 @@ impl App {
         let settings = Settings::new(own_folder.as_deref(), remembered.clone(), ctx);
         let interface = remembered.restore();
         ctx.set_theme(interface.theme);
+        ctx.set_zoom_factor(interface.scale);
+        // The table of keys says what they do.
+        ctx.options_mut(|options| options.zoom_with_keyboard = false);
         Ok(Self {
             home_camera: empty.camera.clone(),
             document: Document::new(empty, None),
@@ -133,6 +138,7 @@ impl App {
             export_wanted: false,
             exporter: Exporter::default(),
             thumbnails: Thumbnails::new(wake())?,
+            recent_pictures: RecentPictures::new(own_folder.as_deref()),
             pinned: None,
             probe: Probe::default(),
             lens_overlay: LensOverlay::new(wake())?,

@@ -96,6 +96,7 @@ impl Pinned {
         painter.with_clip_rect(left).image(self.texture.id(), picture, whole, Color32::WHITE);
         painter.vline(x, visible.y_range(), Stroke::new(3.0, Color32::from_black_alpha(120)));
         painter.vline(x, visible.y_range(), Stroke::new(1.0, Color32::WHITE));
+        grip_mark(&painter, grip.center());
         self.compare(scene);
         self.legend(ui, visible)
     }
@@ -141,6 +142,16 @@ impl Pinned {
                 });
             });
         chosen
+    }
+}
+
+/// Shows that the split can be dragged: a disk with an arrow to each side.
+fn grip_mark(painter: &egui::Painter, at: Pos2) {
+    painter.circle(at, 11.0, Color32::from_black_alpha(170), Stroke::new(1.0, Color32::WHITE));
+    for side in [-1.0, 1.0] {
+        let corner = |x: f32, y: f32| at + egui::vec2(side * x, y);
+        let arrow = vec![corner(7.0, 0.0), corner(3.0, -3.5), corner(3.0, 3.5)];
+        painter.add(egui::Shape::convex_polygon(arrow, Color32::WHITE, Stroke::NONE));
     }
 }
 

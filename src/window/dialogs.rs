@@ -23,11 +23,23 @@ pub(super) enum Purpose {
     PictureFolder,
 }
 
+/// What a dialog will have answered: a path, or nothing.
+pub(super) type Answer = Pin<Box<dyn Future<Output = Option<PathBuf>> + Send>>;
+/// Opens a dialog for a purpose, with a suggestion, and gives back its answer to come.
+pub(super) type Chooser = Box<dyn Fn(Purpose, &str) -> Answer>;
+
 /// The system's dialog while it is open, and the box for typing.
-#[derive(Default)]
 pub(super) struct PathDialogs {
+    /// Where a path is chosen: the system's dialogs, or what a test answers.
+    pub(super) chooser: Chooser,
     asking: Option<Asking>,
     typing: Option<Typing>,
+}
+
+impl Default for PathDialogs {
+    fn default() -> Self {
+        Self { chooser: Box::new(system_dialog), asking: None, typing: None }
+    }
 }
 
 struct Asking {
@@ -48,24 +60,12 @@ impl PathDialogs {
         if self.asking.is_some() {
             return;
         }
-        let dialog = rfd::AsyncFileDialog::new();
         let (sender, answer) = channel();
         let ctx = ctx.clone();
         // The future is made here, where macOS wants it, and waited for elsewhere.
-        let chosen: Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match purpose {
-            Purpose::Open => {
-                let filter = ["toml", "obj", "png"];
-                Box::pin(dialog.add_filter("Scenes, meshes, snapshots", &filter).pick_file())
-            }
-            Purpose::SaveScene => {
-                let dialog = dialog.add_filter("Scene", &["toml"]).set_file_name(suggestion);
-                Box::pin(dialog.save_file())
-            }
-            Purpose::PictureFolder => Box::pin(dialog.set_directory(suggestion).pick_folder()),
-        };
+        let chosen = (self.chooser)(purpose, suggestion);
         let started = threads::spawn("file dialog", move || {
-            let path = pollster::block_on(chosen).map(|file| file.path().to_owned());
-            let _ = sender.send(path);
+            let _ = sender.send(pollster::block_on(chosen));
             ctx.request_repaint();
         });
         match started {
@@ -116,6 +116,23 @@ impl PathDialogs {
     }
 }
 
+/// The dialog of the desktop.
+fn system_dialog(purpose: Purpose, suggestion: &str) -> Answer {
+    let dialog = rfd::AsyncFileDialog::new();
+    let chosen: Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match purpose {
+        Purpose::Open => {
+            let filter = ["toml", "obj", "png"];
+            Box::pin(dialog.add_filter("Scenes, meshes, snapshots", &filter).pick_file())
+        }
+        Purpose::SaveScene => {
+            let dialog = dialog.add_filter("Scene", &["toml"]).set_file_name(suggestion);
+            Box::pin(dialog.save_file())
+        }
+        Purpose::PictureFolder => Box::pin(dialog.set_directory(suggestion).pick_folder()),
+    };
+    Box::pin(async { chosen.await.map(|file| file.path().to_owned()) })
+}
+
 enum BoxAnswer {
     Typing,
     Chosen,
@@ -144,6 +161,7 @@ fn path_box(ctx: &egui::Context, typing: &mut Typing) -> BoxAnswer {
                             } else {
                                 "path of a file"
                             })
+                            .align(Align2::LEFT_CENTER)
                             .desired_width(380.0);
                         let response = ui.add(field).accessible_name("Path");
                         if typing.is_new {
@@ -238,7 +256,7 @@ mod tests {
             }
             drop(sender);
             let asking = Some(Asking { purpose: Purpose::Open, answer, since });
-            let mut dialogs = PathDialogs { asking, typing: None };
+            let mut dialogs = PathDialogs { asking, ..PathDialogs::default() };
             assert_eq!(dialogs.answered(), None, "nobody chose a path");
             assert!(dialogs.asking.is_none(), "the dialog stays open");
             assert_eq!(dialogs.typing.is_some(), types, "sent {is_sent}, since {since:?}");

@@ -21,6 +21,7 @@ pub(super) fn entered_text(
         let field = egui::TextEdit::singleline(&mut text)
             .id(id)
             .hint_text(hint)
+            .align(egui::Align2::LEFT_CENTER)
             .desired_width(ui.available_width());
         let response = ui.add(field).accessible_name(label);
         let response = if help.is_empty() { response } else { response.on_hover_text(help) };

@@ -69,6 +69,8 @@ pub(super) enum Written {
     },
     /// The picture is in that file.
     Snapshot(PathBuf),
+    /// The small picture of an opened file, or none: the page has to look again.
+    RecentPicture,
     /// A copy is kept in case of a crash.
     Copy,
     /// No copy could be kept, for that reason.
@@ -105,6 +107,11 @@ impl FileWork {
 
     /// Starts loading; the scene that is open stays until the new one is ready.
     pub(super) fn open(&mut self, source: Source) {
+        // Recent files are opened from other folders, too.
+        let source = match source {
+            Source::File(path) => Source::File(std::path::absolute(&path).unwrap_or(path)),
+            Source::Gallery(name) => Source::Gallery(name),
+        };
         self.is_completing = false;
         self.is_reloading = false;
         self.loading = Some(source.stem());

@@ -23,7 +23,7 @@ pub(super) fn help_ui(
 ) -> Option<HelpChoice> {
     let frame = modal_frame(&ctx.global_style());
     let modal = egui::Modal::new(Id::unique("help")).frame(frame).show(ctx, |ui| {
-        let room = ctx.content_rect().height() - 220.0;
+        let room = ctx.content_rect().height() - 180.0;
         ui.heading("Keys and mouse");
         ui.add_space(8.0);
         egui::ScrollArea::vertical().max_height(room.max(120.0)).show(ui, |ui| {

@@ -49,11 +49,16 @@ impl App {
                     }
                     self.files.source = Some(Source::File(path.clone()));
                     self.files.scene_path = Some(path);
+                    self.recent_pictures.forget();
                     self.watch_files();
                     self.go_on(ctx);
                 }
                 Written::Snapshot(path) => {
                     self.toasts.say(format!("snapshot {}", path.display()));
+                }
+                Written::RecentPicture => {
+                    self.recent_pictures.note_written();
+                    self.thumbnails.look_again();
                 }
                 Written::Copy => self.recovery.note_written(),
                 Written::NoCopy(reason) => {
@@ -171,6 +176,7 @@ impl App {
         self.files.report = report;
         self.home_camera = description.camera.clone();
         self.interface.forget_scene();
+        self.recent_pictures.forget();
         self.pinned = None;
         self.awaited_click = None;
         self.work.session.abandon();
@@ -230,6 +236,7 @@ impl App {
         self.files.report = loaded.report;
         self.work.set_assets(Arc::new(loaded.assets));
         self.document.reload(description);
+        self.recent_pictures.forget();
         self.watch_files();
         self.toasts.say("reloaded: the file was changed by another program");
     }

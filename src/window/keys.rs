@@ -61,6 +61,12 @@ pub(super) enum Action {
     TogglePanel,
     /// Fills the screen, or goes back to a window.
     FullScreen,
+    /// Makes text and controls larger.
+    LargerText,
+    /// Makes text and controls smaller.
+    SmallerText,
+    /// Text and controls as large as the system wants them.
+    UsualText,
     /// Shows or hides the list of keys.
     Help,
     /// Stops what is under way: loading, a choice, an overlay.
@@ -82,7 +88,15 @@ impl Action {
 
     /// Whether a key that is held does it again and again.
     fn repeats(self) -> bool {
-        matches!(self, Self::Brighter | Self::Darker | Self::Undo | Self::Redo)
+        matches!(
+            self,
+            Self::Brighter
+                | Self::Darker
+                | Self::Undo
+                | Self::Redo
+                | Self::LargerText
+                | Self::SmallerText
+        )
     }
 }
 
@@ -142,6 +156,10 @@ pub(super) const BINDINGS: &[Binding] = &[
     key(Action::Loupe, Modifiers::NONE, Key::L, "loupe; hold for a look"),
     key(Action::TogglePanel, Modifiers::NONE, Key::N, "panel"),
     key(Action::FullScreen, Modifiers::NONE, Key::F11, "full screen"),
+    key(Action::LargerText, Modifiers::COMMAND, Key::Plus, "larger text and controls"),
+    key(Action::LargerText, Modifiers::COMMAND, Key::Equals, "larger text and controls"),
+    key(Action::SmallerText, Modifiers::COMMAND, Key::Minus, "smaller text and controls"),
+    key(Action::UsualText, Modifiers::COMMAND, Key::Num0, "text and controls of usual size"),
     key(Action::Help, Modifiers::NONE, Key::H, "this help"),
     key(Action::Help, Modifiers::NONE, Key::F1, "this help"),
     key(Action::Cancel, Modifiers::NONE, Key::Escape, "cancel, close; never quits"),

@@ -7,9 +7,9 @@ use super::keys::Action;
 use super::loupe::{LoupeFacts, loupe_ui};
 use super::panels::{self, Convergence, RenderFacts};
 use super::parameter::take_reset;
-use super::probe::described;
+use super::probe::{described, feature_at, pixel_at};
 use super::start::start_ui;
-use super::status::{PixelUnderCursor, StatusLine, Work, loading_ui, status_ui};
+use super::status::{StatusLine, Work, loading_ui, status_ui};
 use super::toolbar::{ToolbarChoice, ToolbarFacts, toolbar_ui};
 use super::viewport::{ViewportOutput, physical_size, viewport_ui};
 use super::views::legend_ui;
@@ -20,6 +20,9 @@ use crate::session::{Frame, Phase};
 use crate::threads;
 use egui::{Margin, Panel, Rect, Ui};
 
+/// How wide the panel can be, in points: what its lines need, and what is left to the picture.
+const PANEL_RANGE: std::ops::RangeInclusive<f32> = 324.0..=520.0;
+
 impl App {
     /// The bars, the panel and the picture, editing `scene` in place.
     pub(super) fn layout_ui(&mut self, ui: &mut Ui, scene: &mut SceneDescription) {
@@ -29,7 +32,7 @@ impl App {
         let panel_shown = self.interface.panel_shown && !self.interface.start_shown;
         let side = Panel::right("settings")
             .default_size(self.interface.panel_width)
-            .size_range(272.0..=520.0)
+            .size_range(PANEL_RANGE)
             .resizable(true)
             .frame(egui::Frame::side_top_panel(ui.style()).inner_margin(Margin {
                 left: 8,
@@ -160,7 +163,8 @@ impl App {
 
     fn start_page(&mut self, ui: &mut Ui) {
         let (recent, can_return) = (&self.interface.recent, self.files.has_scene);
-        let chosen = start_ui(ui, &mut self.thumbnails, recent, can_return);
+        self.thumbnails.update(ui.ctx(), self.recent_pictures.places(recent));
+        let chosen = start_ui(ui, &self.thumbnails, recent, can_return);
         self.viewport.hovered_pixel = None;
         self.viewport.flying = false;
         self.viewport.rect = ui.max_rect();
@@ -234,11 +238,8 @@ impl App {
         scene: &SceneDescription,
     ) {
         let [_, height] = self.viewport.size;
-        let known = output.hovered_pixel.zip(frame).and_then(|([x, y], frame)| {
-            let map = frame.maps.features.as_ref()?;
-            // A coarse map would name the neighbour.
-            let is_full = (map.width, map.height) == (frame.job.width, frame.job.height);
-            let feature = map.get(x, y).filter(|_| is_full)?;
+        let known = output.hovered_pixel.zip(frame).and_then(|(at, frame)| {
+            let feature = feature_at(frame, at)?;
             Some(described(feature, scene, &self.work.assets, height))
         });
         let is_free = self.awaited_click.is_none();
@@ -280,18 +281,6 @@ impl App {
             zoom_percent: self.viewport.zoom_percent,
         }
     }
-}
-
-/// The linear value of a pixel of the picture, from a frame that may be coarser.
-fn pixel_at(frame: &Frame, [x, y]: [u32; 2]) -> Option<PixelUnderCursor> {
-    let picture = &frame.picture;
-    let (column, row) = (x / frame.scale.max(1), y / frame.scale.max(1));
-    if picture.width <= column || picture.height <= row {
-        return None;
-    }
-    let index = row as usize * picture.width as usize + column as usize;
-    let linear = *picture.pixels.get(index)?;
-    Some(PixelUnderCursor { at: [x, y], linear })
 }
 
 /// Size and cost of the trees, name and value.

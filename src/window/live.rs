@@ -92,6 +92,7 @@ impl App {
                 self.work.note_noise(frame.generation, frame.samples, frame.noise);
             }
             self.take_snapshot(ctx, &frame);
+            self.keep_recent_picture(ctx, &frame);
         }
         self.picture.update(ctx);
     }

@@ -37,6 +37,7 @@ mod picture;
 mod presets;
 mod probe;
 mod questions;
+mod recent;
 mod recovery;
 mod relocate;
 mod scroll;

@@ -20,6 +20,7 @@ impl App {
             Some(_) => path,
             None => path.with_extension("toml"),
         };
+        let path = std::path::absolute(&path).unwrap_or(path);
         let description = self.document.description.clone();
         let folder = self.files.folder.clone();
         let files: Vec<String> =

@@ -1,13 +1,13 @@
 //! What is under the resting cursor: depth, object, and how large its blur is.
 
-use super::status::Probed;
+use super::status::{PixelUnderCursor, Probed};
 use super::structure::Part;
 use crate::render::{Feature, Seen};
 use crate::scene::Assets;
 use crate::scene::assets::MeshKey;
 use crate::scene::description::{ObjectDescription, SceneDescription};
 use crate::scene::orbit;
-use crate::session::{Picked, Session};
+use crate::session::{Frame, Picked, Session};
 use std::time::Duration;
 
 /// The cursor rests this long before the renderer is asked, in seconds.
@@ -75,6 +75,26 @@ impl Probe {
     }
 }
 
+/// The linear value of a pixel of the picture, from a frame that may be coarser.
+pub(super) fn pixel_at(frame: &Frame, [x, y]: [u32; 2]) -> Option<PixelUnderCursor> {
+    let picture = &frame.picture;
+    let (column, row) = (x / frame.scale.max(1), y / frame.scale.max(1));
+    if picture.width <= column || picture.height <= row {
+        return None;
+    }
+    let index = row as usize * picture.width as usize + column as usize;
+    let linear = *picture.pixels.get(index)?;
+    Some(PixelUnderCursor { at: [x, y], linear })
+}
+
+/// What a pixel sees, where the frame's map is as fine as its picture will be: a coarse one would
+/// name the neighbour.
+pub(super) fn feature_at(frame: &Frame, [x, y]: [u32; 2]) -> Option<&Feature> {
+    let map = frame.maps.features.as_ref()?;
+    let is_full = (map.width, map.height) == (frame.job.width, frame.job.height);
+    map.get(x, y).filter(|_| is_full)
+}
+
 /// What a feature is called in this scene, and how large its blur is in a picture of that height.
 pub(super) fn described(
     feature: &Feature,
@@ -121,5 +141,66 @@ fn material_name(object: &ObjectDescription, slot: u32, assets: &Assets) -> Stri
     match slots.get((slot as usize).min(last)) {
         Some(Some(slot)) => slot.description.name.clone(),
         Some(None) | None => "neutral grey".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::Picture;
+    use crate::render::{PixelMap, RenderJob, RenderSettings};
+    use crate::scene::resolve;
+    use crate::session::Maps;
+    use crate::window::tests::small_scene;
+    use std::sync::Arc;
+
+    /// A frame of a job of 8 x 4, `scale` times coarser; pixels and depths count its pixels.
+    fn frame(scale: u32) -> Frame {
+        let description = small_scene();
+        let scene = Arc::new(resolve(&description, &Assets::default()).unwrap());
+        let settings = RenderSettings::new(&description.render, Default::default());
+        let (width, height) = (8 / scale, 4 / scale);
+        let count = |index: u32| index as f32;
+        let pixels = (0..width * height).map(|index| [count(index); 3]).collect();
+        let feature = |index| Feature { depth: count(index), ..Feature::NOTHING };
+        let of_pixels = (0..width * height).map(feature).collect();
+        let features = Some(Arc::new(PixelMap { width, height, pixels: of_pixels }));
+        Frame {
+            generation: 1,
+            sequence: 1,
+            job: RenderJob { scene, width: 8, height: 4, settings },
+            scale,
+            picture: Picture { width, height, pixels },
+            samples: 1,
+            noise: None,
+            maps: Maps { features, ..Maps::default() },
+        }
+    }
+
+    #[test]
+    fn a_pixel_of_a_preview_is_that_of_its_block() {
+        for (scale, at, expected) in [
+            (1, [7, 3], Some(31.0)),
+            (1, [2, 1], Some(10.0)),
+            (2, [0, 0], Some(0.0)),
+            (2, [3, 1], Some(1.0)),
+            (2, [7, 3], Some(7.0)),
+            (4, [5, 2], Some(1.0)),
+            (1, [8, 0], None),
+            (1, [0, 4], None),
+            (2, [8, 3], None),
+        ] {
+            let found = pixel_at(&frame(scale), at);
+            let value = found.as_ref().map(|pixel| pixel.linear[0]);
+            assert_eq!(value, expected, "{at:?} at a scale of {scale}");
+            assert!(found.is_none_or(|pixel| pixel.at == at), "another place than {at:?}");
+        }
+    }
+
+    #[test]
+    fn a_coarse_map_names_nothing() {
+        let depth = |scale| feature_at(&frame(scale), [2, 1]).map(|feature| feature.depth);
+        assert_eq!(depth(1), Some(10.0), "the map is as fine as the picture");
+        assert_eq!(depth(2), None, "the neighbour is named");
     }
 }

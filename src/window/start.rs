@@ -1,14 +1,14 @@
 //! The start page: a place to drop a file, the files opened before, and the gallery.
 
 use super::background::Background;
-use super::theme;
+use super::{recent, theme};
 use crate::io::gallery::{self, GALLERY, PICTURE_SIZE};
 use crate::io::snapshot::read_pixels;
 use egui::{
     Align2, Button, Color32, ColorImage, CursorIcon, Id, LayerId, Order, Rect, RichText, Sense,
     Stroke, StrokeKind, TextStyle, TextureHandle, TextureOptions, Ui, Vec2, pos2,
 };
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The page is no wider than this, in points.
 const WIDEST: f32 = 1480.0;
@@ -19,6 +19,8 @@ const CARD_WIDTH: f32 = 208.0;
 const GAP: f32 = 16.0;
 /// Height of the title below a picture.
 const TITLE_HEIGHT: f32 = 26.0;
+/// Height of the line of a recent file.
+const RECENT_HEIGHT: f32 = 50.0;
 
 /// What was chosen on the page.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,11 +35,28 @@ pub(super) enum StartChoice {
     Back,
 }
 
-/// The pictures of the gallery: made ready on a thread of their own when the page is first shown.
+/// The pictures of the page: made ready on a thread of their own when they are first shown.
 pub(super) struct Thumbnails {
-    thread: Background<(), Vec<Option<ColorImage>>>,
-    asked: bool,
-    shown: Vec<Option<TextureHandle>>,
+    thread: Background<Wanted, Made>,
+    asked: Option<Vec<PathBuf>>,
+    is_old: bool,
+    gallery: Vec<Option<TextureHandle>>,
+    recent: Vec<Option<TextureHandle>>,
+}
+
+/// What the page needs.
+struct Wanted {
+    /// Whether the gallery's pictures have still to be made.
+    gallery: bool,
+    /// Where the pictures of recent files would be.
+    recent: Vec<PathBuf>,
+}
+
+/// In the same order; `None` where there is no picture.
+#[derive(Default)]
+struct Made {
+    gallery: Option<Vec<Option<ColorImage>>>,
+    recent: Vec<Option<ColorImage>>,
 }
 
 impl Thumbnails {
@@ -46,19 +65,48 @@ impl Thumbnails {
     /// # Errors
     /// When the system has no thread left.
     pub(super) fn new(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let read = |()| GALLERY.iter().map(|entry| thumbnail(entry.name)).collect();
-        let thread = Background::new("gallery pictures", read, wake)?;
-        Ok(Self { thread, asked: false, shown: Vec::new() })
+        let make = |wanted: Wanted| Made {
+            gallery: wanted
+                .gallery
+                .then(|| GALLERY.iter().map(|entry| thumbnail(entry.name)).collect()),
+            recent: wanted.recent.iter().map(|place| recent::read(place)).collect(),
+        };
+        let thread = Background::new("small pictures", make, wake)?;
+        Ok(Self { thread, asked: None, is_old: false, gallery: Vec::new(), recent: Vec::new() })
     }
 
-    fn update(&mut self, ctx: &egui::Context) {
-        if !std::mem::replace(&mut self.asked, true) {
-            self.thread.order(());
+    /// Asks for the pictures that the page needs, and takes those that are ready; `recent` is where
+    /// those of the recent files would be.
+    pub(super) fn update(&mut self, ctx: &egui::Context, recent: Vec<PathBuf>) {
+        let is_other = self.asked.as_ref() != Some(&recent);
+        if is_other {
+            // What is shown belongs to other lines.
+            self.recent.clear();
         }
-        if let Some(images) = self.thread.take() {
-            let load = |image| ctx.load_texture("gallery", image, TextureOptions::LINEAR);
-            self.shown = images.into_iter().map(|image| image.map(load)).collect();
+        if std::mem::take(&mut self.is_old) || is_other {
+            self.thread.order(Wanted { gallery: self.gallery.is_empty(), recent: recent.clone() });
+            self.asked = Some(recent);
         }
+        let Some(made) = self.thread.take() else { return };
+        let load = |image| ctx.load_texture("start page", image, TextureOptions::LINEAR);
+        let load_all = |images: Vec<Option<ColorImage>>| {
+            images.into_iter().map(|image| image.map(load)).collect()
+        };
+        if let Some(gallery) = made.gallery {
+            self.gallery = load_all(gallery);
+        }
+        self.recent = load_all(made.recent);
+    }
+
+    /// The pictures of recent files have changed.
+    pub(super) fn look_again(&mut self) {
+        self.is_old = true;
+    }
+
+    /// Which of the recent files have a picture on the page.
+    #[cfg(test)]
+    pub(super) fn recent_shown(&self) -> Vec<bool> {
+        self.recent.iter().map(Option::is_some).collect()
     }
 }
 
@@ -72,11 +120,10 @@ fn thumbnail(name: &str) -> Option<ColorImage> {
 /// Shows the page. `can_return` says whether a scene is open behind it.
 pub(super) fn start_ui(
     ui: &mut Ui,
-    thumbnails: &mut Thumbnails,
+    thumbnails: &Thumbnails,
     recent: &[PathBuf],
     can_return: bool,
 ) -> Option<StartChoice> {
-    thumbnails.update(ui.ctx());
     ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
     let mut chosen = None;
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -91,10 +138,10 @@ pub(super) fn start_ui(
                 ui.horizontal_top(|ui| {
                     ui.vertical(|ui| {
                         ui.set_width(SIDE_WIDTH);
-                        side_ui(ui, recent, can_return, &mut chosen);
+                        side_ui(ui, recent, &thumbnails.recent, can_return, &mut chosen);
                     });
                     ui.add_space(2.0 * GAP);
-                    ui.vertical(|ui| gallery_ui(ui, &thumbnails.shown, &mut chosen));
+                    ui.vertical(|ui| gallery_ui(ui, &thumbnails.gallery, &mut chosen));
                 });
                 ui.add_space(GAP);
             });
@@ -103,7 +150,13 @@ pub(super) fn start_ui(
     chosen
 }
 
-fn side_ui(ui: &mut Ui, recent: &[PathBuf], can_return: bool, chosen: &mut Option<StartChoice>) {
+fn side_ui(
+    ui: &mut Ui,
+    recent: &[PathBuf],
+    pictures: &[Option<TextureHandle>],
+    can_return: bool,
+    chosen: &mut Option<StartChoice>,
+) {
     ui.heading("Penumbra");
     ui.add_space(4.0);
     ui.weak("See how a picture is made of light.");
@@ -127,8 +180,9 @@ fn side_ui(ui: &mut Ui, recent: &[PathBuf], can_return: bool, chosen: &mut Optio
     if recent.is_empty() {
         ui.weak("Files that you open are listed here.");
     }
-    for path in recent {
-        if recent_ui(ui, path) {
+    for (index, path) in recent.iter().enumerate() {
+        let picture = pictures.get(index).and_then(Option::as_ref);
+        if recent_ui(ui, path, picture) {
             *chosen = Some(StartChoice::File(path.clone()));
         }
     }
@@ -177,18 +231,30 @@ pub(super) fn drop_hint(ctx: &egui::Context, over: Rect) {
 }
 
 /// A line for a file opened before; gives back whether it was clicked.
-fn recent_ui(ui: &mut Ui, path: &std::path::Path) -> bool {
+fn recent_ui(ui: &mut Ui, path: &Path, picture: Option<&TextureHandle>) -> bool {
     let (rect, response) =
-        ui.allocate_exact_size(Vec2::new(ui.available_width(), 40.0), Sense::click());
+        ui.allocate_exact_size(Vec2::new(ui.available_width(), RECENT_HEIGHT), Sense::click());
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
     if response.hovered() || response.has_focus() {
-        ui.painter().rect_filled(rect, 4.0, ui.visuals().widgets.hovered.weak_bg_fill);
+        let behind = rect.expand2(Vec2::new(6.0, 0.0));
+        ui.painter().rect_filled(behind, 6.0, ui.visuals().widgets.hovered.weak_bg_fill);
     }
-    let inner = rect.shrink2(Vec2::new(8.0, 4.0));
-    let lines = ui.new_child(egui::UiBuilder::new().max_rect(inner));
-    let mut lines = lines;
-    lines.spacing_mut().item_spacing.y = 0.0;
+    let inner = rect.shrink2(Vec2::new(0.0, 5.0));
+    let width = inner.height() * recent::SIZE.0 as f32 / recent::SIZE.1 as f32;
+    let frame = Rect::from_min_size(inner.min, Vec2::new(width.round(), inner.height()));
+    picture_ui(ui, frame, 4, picture);
+    if picture.is_none() {
+        // The kind of file, where there is no picture of it.
+        let kind = path.extension().unwrap_or_default().to_string_lossy();
+        let font = TextStyle::Small.resolve(ui.style());
+        let color = ui.visuals().weak_text_color();
+        let painter = ui.painter().with_clip_rect(frame.intersect(ui.clip_rect()));
+        painter.text(frame.center(), Align2::CENTER_CENTER, kind, font, color);
+    }
+    let beside = inner.with_min_x(frame.right() + 10.0).shrink2(Vec2::new(0.0, 2.0));
+    let mut lines = ui.new_child(egui::UiBuilder::new().max_rect(beside));
+    lines.spacing_mut().item_spacing.y = 1.0;
     lines.add(egui::Label::new(name).truncate());
     let folder = path.parent().unwrap_or(path).display().to_string();
     lines.add(egui::Label::new(RichText::new(folder).weak().small()).truncate());
@@ -196,6 +262,19 @@ fn recent_ui(ui: &mut Ui, path: &std::path::Path) -> bool {
         .on_hover_cursor(CursorIcon::PointingHand)
         .on_hover_text(path.display().to_string())
         .clicked()
+}
+
+/// A picture of the page in its place, or the place alone.
+fn picture_ui(ui: &Ui, place: Rect, radius: u8, picture: Option<&TextureHandle>) {
+    match picture {
+        Some(picture) => egui::Image::new(picture)
+            .corner_radius(radius)
+            .fit_to_exact_size(place.size())
+            .paint_at(ui, place),
+        None => {
+            ui.painter().rect_filled(place, radius, ui.visuals().extreme_bg_color);
+        }
+    }
 }
 
 fn gallery_ui(ui: &mut Ui, pictures: &[Option<TextureHandle>], chosen: &mut Option<StartChoice>) {
@@ -228,15 +307,7 @@ fn card_ui(ui: &mut Ui, width: f32, title: &str, picture: Option<&TextureHandle>
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, title));
     let image = Rect::from_min_size(rect.min, Vec2::new(width, height));
-    match picture {
-        Some(picture) => egui::Image::new(picture)
-            .corner_radius(6)
-            .fit_to_exact_size(image.size())
-            .paint_at(ui, image),
-        None => {
-            ui.painter().rect_filled(image, 6.0, ui.visuals().extreme_bg_color);
-        }
-    }
+    picture_ui(ui, image, 6, picture);
     let is_active = response.hovered() || response.has_focus();
     if is_active {
         let stroke = Stroke::new(2.0, theme::accent(ui.visuals()));

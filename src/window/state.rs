@@ -11,6 +11,8 @@ use std::path::PathBuf;
 
 /// Width of the panel at first, in points.
 pub(super) const PANEL_WIDTH: f32 = 328.0;
+/// How much larger than usual text and controls can be.
+const SCALES: std::ops::RangeInclusive<f32> = 0.5..=3.0;
 /// Files named in the menu of recent ones.
 const MOST_RECENT: usize = 10;
 
@@ -61,6 +63,8 @@ pub(super) struct InterfaceState {
     pub(super) theme: ThemePreference,
     /// Width of the panel in points.
     pub(super) panel_width: f32,
+    /// How much larger than usual text and controls are.
+    pub(super) scale: f32,
 }
 
 impl Default for InterfaceState {
@@ -88,6 +92,7 @@ impl Default for InterfaceState {
             n_threads: None,
             theme: ThemePreference::System,
             panel_width: PANEL_WIDTH,
+            scale: 1.0,
         }
     }
 }
@@ -104,6 +109,7 @@ pub(super) struct Remembered {
     n_threads: Option<usize>,
     theme: ThemePreference,
     panel_width: f32,
+    scale: f32,
 }
 
 impl Default for Remembered {
@@ -125,6 +131,7 @@ impl Remembered {
             n_threads: state.n_threads,
             theme: state.theme,
             panel_width: state.panel_width,
+            scale: state.scale,
         }
     }
 
@@ -139,6 +146,7 @@ impl Remembered {
             n_threads: self.n_threads.map(|n| n.clamp(1, threads::available())),
             theme: self.theme,
             panel_width: self.panel_width,
+            scale: held(self.scale),
             ..InterfaceState::default()
         }
     }
@@ -148,6 +156,11 @@ impl InterfaceState {
     /// Threads that render: as chosen, or as many as go with a window.
     pub(super) fn n_threads(&self) -> usize {
         self.n_threads.unwrap_or_else(threads::beside_window)
+    }
+
+    /// Makes text and controls larger by so many tenths of their usual size.
+    pub(super) fn enlarge(&mut self, tenths: f32) {
+        self.scale = held(((self.scale * 10.0).round() + tenths) / 10.0);
     }
 
     /// Forgets what belongs to the scene that was open.
@@ -166,6 +179,11 @@ impl InterfaceState {
         self.recent.insert(0, path);
         self.recent.truncate(MOST_RECENT);
     }
+}
+
+/// A scale that leaves the window usable.
+fn held(scale: f32) -> f32 {
+    if scale.is_finite() { scale.clamp(*SCALES.start(), *SCALES.end()) } else { 1.0 }
 }
 
 #[cfg(test)]
@@ -187,9 +205,23 @@ mod tests {
         state.size_mode = SizeMode::Fixed;
         state.theme = ThemePreference::Light;
         state.panel_width = 400.0;
+        state.enlarge(2.0);
         state.export.format = crate::io::output::OutputFormat::Exr;
         state.remember_file(PathBuf::from("a.toml"));
         let kept = Remembered::of(&state);
         assert_eq!(Remembered::of(&kept.clone().restore()), kept, "something was lost");
+    }
+    #[test]
+    fn text_grows_by_tenths_and_stays_readable() {
+        let mut state = InterfaceState::default();
+        for (tenths, expected) in [(1.0, 1.1), (1.0, 1.2), (-4.0, 0.8), (-9.0, 0.5), (99.0, 3.0)] {
+            state.enlarge(tenths);
+            assert_eq!(state.scale, expected, "after {tenths} tenths");
+        }
+        for broken in [f32::NAN, f32::INFINITY, 0.0, -1.0, 1e9] {
+            let kept = Remembered { scale: broken, ..Remembered::default() };
+            let scale = kept.restore().scale;
+            assert!(SCALES.contains(&scale), "{broken} becomes {scale}");
+        }
     }
 }

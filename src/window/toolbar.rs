@@ -176,6 +176,11 @@ fn menus(ui: &mut Ui, facts: &ToolbarFacts<'_>, chosen: &mut Option<ToolbarChoic
         item(ui, keys, "Restart", Action::Restart, chosen);
         ui.separator();
         item(ui, keys, "Full screen", Action::FullScreen, chosen);
+        ui.menu_button("Text", |ui| {
+            item(ui, keys, "Larger", Action::LargerText, chosen);
+            item(ui, keys, "Smaller", Action::SmallerText, chosen);
+            item(ui, keys, "As the system", Action::UsualText, chosen);
+        });
         ui.menu_button("Theme", |ui| {
             let mut preference = ui.options(|options| options.theme_preference);
             let before = preference;

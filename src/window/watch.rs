@@ -95,20 +95,14 @@ impl Shared {
 
     fn watch(&self, wake: &impl Fn()) {
         let mut number = 0;
-        let mut known: Vec<Stamp> = Vec::new();
-        let mut pending: Option<Vec<Stamp>> = None;
+        let mut seen = Seen::default();
         while let Some((paths, current)) = self.next_look() {
             if current != number {
-                (number, known, pending) = (current, self.lock().stamps.clone(), None);
+                (number, seen) = (current, Seen::new(self.lock().stamps.clone()));
             }
-            let stamps: Vec<Stamp> = paths.iter().map(stamp).collect();
-            if pending.as_ref() == Some(&stamps) {
-                // It changed and has rested since.
-                (known, pending) = (stamps, None);
+            if seen.is_news(paths.iter().map(stamp).collect()) {
                 self.lock().has_news = true;
                 wake();
-            } else {
-                pending = (stamps != known && stamps.iter().all(Option::is_some)).then_some(stamps);
             }
         }
     }
@@ -126,6 +120,33 @@ impl Shared {
             waited.unwrap_or_else(PoisonError::into_inner).0
         };
         (!list.closing).then(|| (list.paths.clone(), list.number))
+    }
+}
+
+/// What the looks at the files have seen.
+#[derive(Debug, Default)]
+struct Seen {
+    /// What was told last.
+    known: Vec<Stamp>,
+    /// A change that has still to rest.
+    pending: Option<Vec<Stamp>>,
+}
+
+impl Seen {
+    fn new(known: Vec<Stamp>) -> Self {
+        Self { known, pending: None }
+    }
+
+    /// Whether the files have changed and have rested since the last look. One that is gone is
+    /// being written anew.
+    fn is_news(&mut self, stamps: Vec<Stamp>) -> bool {
+        if self.pending.as_ref() == Some(&stamps) {
+            *self = Self::new(stamps);
+            return true;
+        }
+        let has_changed = stamps != self.known && stamps.iter().all(Option::is_some);
+        self.pending = has_changed.then_some(stamps);
+        false
     }
 }
 
@@ -152,6 +173,36 @@ mod tests {
         woken.recv_timeout(Duration::from_secs(20)).expect("the change is noticed");
         assert!(watcher.take_news(), "woken without news");
         assert!(!watcher.take_news(), "the same news twice");
+    }
+
+    #[test]
+    fn a_change_is_news_once_it_is_the_same_at_two_looks() {
+        let stamps = |lengths: [Option<u64>; 2]| -> Vec<Stamp> {
+            lengths.map(|length| Some((SystemTime::UNIX_EPOCH, length?))).to_vec()
+        };
+        let (old, half) = (stamps([Some(1), Some(2)]), stamps([Some(1), Some(5)]));
+        let (gone, whole) = (stamps([Some(1), None]), stamps([Some(1), Some(9)]));
+        let mut seen = Seen::new(old.clone());
+        for (look, (now, is_news)) in [
+            (&old, false),
+            (&half, false),
+            (&whole, false),
+            (&whole, true),
+            (&whole, false),
+            (&gone, false),
+            (&gone, false),
+            (&whole, false),
+            (&old, false),
+            (&whole, false),
+            (&whole, false),
+            (&half, false),
+            (&half, true),
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            assert_eq!(seen.is_news(now.clone()), is_news, "at look {look}");
+        }
     }
 
     /// Before the thread has looked for the first time.

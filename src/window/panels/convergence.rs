@@ -1,18 +1,22 @@
 //! How the noise falls: a graph of noise against samples, both logarithmic, and when the next round
 //! figure is reached.
 //!
-//! Drawn here rather than by a plotting crate: those have linear axes, so that ticks, grid and
-//! points would have to be made logarithmic by hand all the same.
+//! The plot has linear axes: it is given logarithms (base 10), and round figures for its ticks.
 
 use crate::render::Noise;
 use crate::window::figures::{duration, noise_text, percent_text, short};
 use crate::window::theme;
-use egui::{Align2, Pos2, Rect, Sense, Shape, Stroke, TextStyle, Ui, Vec2, pos2};
+use egui::{Color32, Margin, Sense, TextStyle, Ui};
+use egui_plot::{
+    AxisHints, FilledArea, GridMark, HLine, HoverPosition, Line, LineStyle, Plot, PlotUi, Points,
+    VLine,
+};
+use std::ops::RangeInclusive;
 
-/// Height of the graph in points.
-const HEIGHT: f32 = 148.0;
-/// Room for the figures on the left and below.
-const MARGIN: Vec2 = Vec2::new(38.0, 18.0);
+/// Height of the graph in points, with the figures below it.
+const HEIGHT: f32 = 132.0;
+/// Room for the figures on the left, in points.
+const LEFT: f32 = 34.0;
 /// What the graph shows.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::window) struct Convergence<'a> {
@@ -24,6 +28,13 @@ pub(in crate::window) struct Convergence<'a> {
     pub(in crate::window) is_rendering: bool,
 }
 
+/// Where rendering stops.
+#[derive(Clone, Copy, Debug)]
+struct Goal {
+    samples: f64,
+    percent: Option<f64>,
+}
+
 /// A figure of the graph.
 #[derive(Clone, Copy, Debug)]
 struct Point {
@@ -32,6 +43,11 @@ struct Point {
 }
 
 impl Point {
+    /// Where it is in the plot.
+    fn place(&self) -> [f64; 2] {
+        place(self.samples, self.noise.percent)
+    }
+
     /// The noise to expect at so many samples.
     fn percent_at(&self, samples: f64) -> f64 {
         self.noise.percent_after(samples / self.samples)
@@ -41,9 +57,19 @@ impl Point {
     fn percent_less(&self, errors: f64) -> f64 {
         self.noise.percent * (1.0 - errors * self.noise.uncertainty.min(0.9))
     }
+
+    fn told(&self) -> String {
+        format!("{} at {} samples", noise_text(self.noise), short(self.samples))
+    }
 }
 
-/// Graph and outlook; `goal_samples` and `goal_percent` are where rendering stops.
+/// Where a figure goes in the plot.
+fn place(samples: f64, percent: f64) -> [f64; 2] {
+    [samples.max(1.0).log10(), percent.max(1e-9).log10()]
+}
+
+/// Graph and outlook; `goal_samples` and `goal_percent` are where rendering stops. As high before
+/// the first estimate as after it, so that nothing below it moves when a picture begins anew.
 pub(super) fn convergence_ui(
     ui: &mut Ui,
     convergence: &Convergence<'_>,
@@ -56,146 +82,158 @@ pub(super) fn convergence_ui(
         .map(|(samples, noise)| Point { samples: f64::from(*samples), noise: *noise })
         .filter(|point| 0.0 < point.noise.percent)
         .collect();
-    let (Some(first), Some(last)) = (points.first(), points.last()) else { return };
-    let (rect, response) =
-        ui.allocate_exact_size(Vec2::new(ui.available_width(), HEIGHT), Sense::hover());
-    let told =
-        |point: &Point| format!("{} at {} samples", noise_text(point.noise), short(point.samples));
-    let both = format!("noise {}, {}", told(first), told(last));
+    let goal = Goal { samples: f64::from(goal_samples), percent: goal_percent };
+    let response = egui::Frame::new()
+        .fill(ui.visuals().extreme_bg_color)
+        .corner_radius(4)
+        .inner_margin(Margin { left: 2, right: 12, top: 8, bottom: 4 })
+        .show(ui, |ui| graph(ui, &points, goal, convergence.is_rendering))
+        .inner;
+    let both = match (points.first(), points.last()) {
+        (Some(first), Some(last)) => format!("noise {}, {}", first.told(), last.told()),
+        _ => "noise, not known yet".to_owned(),
+    };
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &both));
-    let axes = Axes::new(rect, &points, f64::from(goal_samples), goal_percent);
-    axes.draw_grid(ui, rect);
-    axes.draw_goals(ui, f64::from(goal_samples), goal_percent);
-    axes.draw_course(ui, &points, f64::from(goal_samples), convergence.is_rendering);
-    if let Some(at) = response.hover_pos().filter(|at| axes.area.contains(*at)) {
-        let nearest = points.iter().min_by(|a, b| {
-            let away = |point: &Point| (axes.of(point).x - at.x).abs();
-            away(a).total_cmp(&away(b))
-        });
-        if let Some(point) = nearest {
-            let marker = Stroke::new(1.5, ui.visuals().strong_text_color());
-            ui.painter().circle_stroke(axes.of(point), 4.0, marker);
-            response.on_hover_text_at_pointer(told(point));
-        }
-    }
     ui.label(outlook(convergence, goal_percent));
 }
 
-/// Where figures go in the graph.
-struct Axes {
-    area: Rect,
-    /// Logarithms (base 10) of samples at the left and right edge.
-    x: (f64, f64),
-    /// Logarithms (base 10) of percent at the bottom and top edge.
-    y: (f64, f64),
+fn graph(ui: &mut Ui, points: &[Point], goal: Goal, is_rendering: bool) -> egui::Response {
+    let (across, up) = spans(points, goal);
+    let look = Look::of(ui);
+    let font = TextStyle::Small.resolve(ui.style());
+    let axis =
+        |axis: AxisHints<'static>| axis.tick_label_color(look.quiet).tick_label_font(font.clone());
+    let marks = |range: &RangeInclusive<f64>, most| {
+        let length = range.end() - range.start();
+        // As far apart as the axis is long: each tick is drawn, and as strong as the others.
+        let mark = move |value: f64| GridMark { value: value.log10(), step_size: length };
+        ticks(range, most).into_iter().map(mark).collect::<Vec<_>>()
+    };
+    let (columns, rows) = (marks(&across, 6), marks(&up, 5));
+    let samples_of = |mark: GridMark, _: &RangeInclusive<f64>| short(10.0_f64.powf(mark.value));
+    let percent_of =
+        move |mark: GridMark, range: &RangeInclusive<f64>| samples_of(mark, range) + " %";
+    let near = |samples: f64| {
+        let away = |point: &Point| (point.place()[0] - samples).abs();
+        points.iter().min_by(|a, b| away(a).total_cmp(&away(b)))
+    };
+    Plot::new("noise by samples")
+        .height(HEIGHT)
+        .sense(Sense::hover())
+        .allow_axis_zoom_drag(false)
+        .allow_boxed_zoom(false)
+        .allow_double_click_reset(false)
+        .allow_drag(false)
+        .allow_scroll(false)
+        .allow_zoom(false)
+        .show_background(false)
+        .show_crosshair(false)
+        .grid_color(look.grid)
+        .grid_fade(0.0)
+        .x_grid_spacer(move |_| columns.clone())
+        .y_grid_spacer(move |_| rows.clone())
+        .custom_x_axes(vec![axis(AxisHints::new_x()).formatter(samples_of)])
+        .custom_y_axes(vec![axis(AxisHints::new_y()).formatter(percent_of).min_thickness(LEFT)])
+        .label_formatter(move |at| {
+            let (HoverPosition::NearDataPoint { position, .. }
+            | HoverPosition::Elsewhere { position }) = at;
+            near(position.x).map(Point::told)
+        })
+        .show(ui, |plot| {
+            plot.set_plot_bounds_x(across);
+            plot.set_plot_bounds_y(up);
+            draw_goal(plot, goal, &look);
+            draw_course(plot, points, goal, is_rendering, &look);
+            if let Some(point) = plot.pointer_coordinate().and_then(|at| near(at.x)) {
+                let marker = Points::new("under the cursor", vec![point.place()]);
+                plot.points(marker.radius(4.5).color(look.strong).filled(false).allow_hover(false));
+            }
+        })
+        .response
 }
 
-impl Axes {
-    fn new(rect: Rect, points: &[Point], goal: f64, goal_percent: Option<f64>) -> Self {
-        let area = Rect::from_min_max(
-            rect.min + Vec2::new(MARGIN.x, 8.0),
-            rect.max - Vec2::new(10.0, MARGIN.y),
-        );
-        let last_samples = points.last().map_or(1.0, |last| last.samples);
-        let right = goal.max(last_samples).max(4.0);
-        let expected = points.last().map(|last| last.percent_at(right));
-        let noise = points.iter().map(|point| point.noise.percent).chain(expected);
-        let noise = noise.chain(goal_percent.filter(|goal| 1e-3 < *goal));
-        let (low, high) = noise.fold((f64::MAX, f64::MIN), |(low, high), percent| {
-            (low.min(percent.log10()), high.max(percent.log10()))
-        });
-        // At least half a decade, so that little noise in the noise is no mountain.
-        let air = ((0.5 - (high - low)) / 2.0).max(0.06);
-        Self { area, x: (0.0, right.log10()), y: (low - air, high + air) }
-    }
+/// Logarithms of the samples and of the percentages that the plot shows.
+fn spans(points: &[Point], goal: Goal) -> (RangeInclusive<f64>, RangeInclusive<f64>) {
+    let last = points.last();
+    let right = goal.samples.max(last.map_or(1.0, |last| last.samples)).max(4.0);
+    let expected = last.map(|last| last.percent_at(right));
+    let noise = points.iter().map(|point| point.noise.percent).chain(expected);
+    let noise = noise.chain(goal.percent.filter(|goal| 1e-3 < *goal));
+    let (low, high) = noise.fold((f64::MAX, f64::MIN), |(low, high), percent| {
+        (low.min(percent.log10()), high.max(percent.log10()))
+    });
+    // From 1 % to 100 % where nothing is known.
+    let (low, high) = if low <= high { (low, high) } else { (0.0, 2.0) };
+    // At least half a decade, so that little noise in the noise is no mountain.
+    let air = ((0.5 - (high - low)) / 2.0).max(0.06);
+    // Room for the dot at the end.
+    let margin = right.log10() * 0.015;
+    (-margin..=right.log10() + margin, low - air..=high + air)
+}
 
-    fn at(&self, samples: f64, percent: f64) -> Pos2 {
-        let share = |value: f64, (low, high): (f64, f64)| {
-            ((value.log10() - low) / (high - low).max(1e-9)).clamp(0.0, 1.0) as f32
-        };
-        let (x, y) = (share(samples.max(1.0), self.x), share(percent.max(1e-9), self.y));
-        pos2(self.area.left() + x * self.area.width(), self.area.bottom() - y * self.area.height())
-    }
+/// The colours of the plot.
+struct Look {
+    accent: Color32,
+    grid: Color32,
+    quiet: Color32,
+    strong: Color32,
+}
 
-    fn of(&self, point: &Point) -> Pos2 {
-        self.at(point.samples, point.noise.percent)
+impl Look {
+    fn of(ui: &Ui) -> Self {
+        let visuals = ui.visuals();
+        Self {
+            accent: theme::accent(visuals),
+            grid: theme::hairline(visuals).color.gamma_multiply(0.6),
+            quiet: visuals.weak_text_color(),
+            strong: visuals.strong_text_color(),
+        }
     }
+}
 
-    fn draw_grid(&self, ui: &Ui, rect: Rect) {
-        let painter = ui.painter_at(rect);
-        painter.rect_filled(rect, 4.0, ui.visuals().extreme_bg_color);
-        let font = TextStyle::Small.resolve(ui.style());
-        let (quiet, line) = (ui.visuals().weak_text_color(), theme::hairline(ui.visuals()));
-        let line = Stroke::new(1.0, line.color.gamma_multiply(0.6));
-        for percent in ticks(self.y, 5) {
-            let y = self.at(1.0, percent).y;
-            painter.hline(self.area.x_range(), y, line);
-            let at = pos2(self.area.left() - 5.0, y);
-            painter.text(
-                at,
-                Align2::RIGHT_CENTER,
-                format!("{} %", short(percent)),
-                font.clone(),
-                quiet,
-            );
-        }
-        for samples in ticks(self.x, 6).into_iter().filter(|samples| 1.0 <= *samples) {
-            let x = self.at(samples, 1.0).x;
-            painter.vline(x, self.area.y_range(), line);
-            let at = pos2(x, self.area.bottom() + 3.0);
-            painter.text(at, Align2::CENTER_TOP, short(samples), font.clone(), quiet);
-        }
+/// Where rendering stops: a line for the samples, one for the noise.
+fn draw_goal(plot: &mut PlotUi<'_>, goal: Goal, look: &Look) {
+    let style = LineStyle::Dashed { length: 3.0 };
+    let [x, y] = place(goal.samples, goal.percent.unwrap_or(1.0));
+    plot.vline(VLine::new("samples", x).color(look.quiet).style(style).allow_hover(false));
+    if goal.percent.is_some() {
+        plot.hline(HLine::new("noise", y).color(look.quiet).style(style).allow_hover(false));
     }
+}
 
-    /// Where rendering stops: a line for the samples, one for the noise.
-    fn draw_goals(&self, ui: &Ui, goal_samples: f64, goal_percent: Option<f64>) {
-        let stroke = Stroke::new(1.0, ui.visuals().weak_text_color());
-        let x = self.at(goal_samples, 1.0).x;
-        let painter = ui.painter();
-        let (top, bottom) = (pos2(x, self.area.top()), pos2(x, self.area.bottom()));
-        painter.extend(Shape::dashed_line(&[top, bottom], stroke, 3.0, 3.0));
-        if let Some(percent) = goal_percent {
-            let y = self.at(1.0, percent).y;
-            let ends = [pos2(self.area.left(), y), pos2(self.area.right(), y)];
-            painter.extend(Shape::dashed_line(&ends, stroke, 3.0, 3.0));
-        }
+/// What was measured, between the limits of its uncertainty, and how it should go on.
+fn draw_course(
+    plot: &mut PlotUi<'_>,
+    points: &[Point],
+    goal: Goal,
+    is_rendering: bool,
+    look: &Look,
+) {
+    let Some(last) = points.last() else { return };
+    let limit = |errors| -> Vec<f64> {
+        points.iter().map(|point| place(1.0, point.percent_less(errors))[1]).collect()
+    };
+    let across: Vec<f64> = points.iter().map(|point| point.place()[0]).collect();
+    let band = FilledArea::new("uncertainty", &across, &limit(1.0), &limit(-1.0));
+    let edge = egui::Stroke::new(0.75, look.accent.gamma_multiply(0.55));
+    plot.add(band.fill_color(look.accent.gamma_multiply(0.3)).stroke(edge).allow_hover(false));
+    if is_rendering && last.samples < goal.samples {
+        let then = place(goal.samples, last.percent_at(goal.samples));
+        let expected = Line::new("expected", vec![last.place(), then]);
+        let style = LineStyle::Dotted { spacing: 5.0 };
+        let faint = look.accent.gamma_multiply(0.6);
+        plot.line(expected.color(faint).width(1.5).style(style).allow_hover(false));
     }
-
-    /// What was measured, between the limits of its uncertainty, and how it should go on.
-    fn draw_course(&self, ui: &Ui, points: &[Point], goal: f64, is_rendering: bool) {
-        let accent = theme::accent(ui.visuals());
-        let painter = ui.painter();
-        let Some(last) = points.last() else { return };
-        for pair in points.windows(2) {
-            let limit = |point: &Point, errors| self.at(point.samples, point.percent_less(errors));
-            let band = [
-                limit(&pair[0], 1.0),
-                limit(&pair[1], 1.0),
-                limit(&pair[1], -1.0),
-                limit(&pair[0], -1.0),
-            ];
-            let faint = accent.gamma_multiply(0.3);
-            painter.add(Shape::convex_polygon(band.to_vec(), faint, Stroke::NONE));
-        }
-        for errors in [1.0, -1.0] {
-            let limit = |point: &Point| self.at(point.samples, point.percent_less(errors));
-            let edge = Stroke::new(0.75, accent.gamma_multiply(0.55));
-            painter.line(points.iter().map(limit).collect(), edge);
-        }
-        if is_rendering && last.samples < goal {
-            let then = self.at(goal, last.percent_at(goal));
-            let faint = Stroke::new(1.5, accent.gamma_multiply(0.5));
-            painter.extend(Shape::dashed_line(&[self.of(last), then], faint, 2.0, 4.0));
-        }
-        let course = points.iter().map(|point| self.of(point)).collect();
-        painter.line(course, Stroke::new(1.25, ui.visuals().strong_text_color()));
-        painter.circle_filled(self.of(last), 3.0, ui.visuals().strong_text_color());
-    }
+    let course: Vec<[f64; 2]> = points.iter().map(Point::place).collect();
+    plot.line(Line::new("course", course).color(look.strong).width(1.25).allow_hover(false));
+    let dot = Points::new("now", vec![last.place()]);
+    plot.points(dot.color(look.strong).radius(3.0).allow_hover(false));
 }
 
 /// Round figures between two logarithms: powers of ten, with 2 and 5 between them where `most` of
 /// them have room.
-fn ticks((low, high): (f64, f64), most: usize) -> Vec<f64> {
+fn ticks(range: &RangeInclusive<f64>, most: usize) -> Vec<f64> {
+    let (low, high) = (*range.start(), *range.end());
     let decades = low.floor() as i32..=high.ceil() as i32;
     let inside = |steps: &[f64]| -> Vec<f64> {
         let all = decades.clone().flat_map(|decade| {
@@ -219,7 +257,12 @@ fn ticks((low, high): (f64, f64), most: usize) -> Vec<f64> {
 fn outlook(convergence: &Convergence<'_>, goal_percent: Option<f64>) -> String {
     let last = convergence.noise.last().filter(|(_, noise)| 0.0 < noise.percent);
     let Some((_, noise)) = last.copied() else {
-        return String::new();
+        let told = if convergence.is_rendering {
+            "noise: known after a few samples"
+        } else {
+            "noise: not known"
+        };
+        return told.to_owned();
     };
     if !convergence.is_rendering {
         return format!("{} after {}", noise_text(noise), duration(convergence.seconds));
@@ -273,20 +316,24 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_few() {
-        assert_eq!(ticks((0.0, 1.0), 5), [1.0, 2.0, 5.0, 10.0], "one decade");
-        assert_eq!(ticks((-1.0, 2.0), 5), [0.1, 1.0, 10.0, 100.0], "three decades");
-        assert!(ticks((0.0, 6.0), 6).len() <= 6, "too many for six decades");
+        assert_eq!(ticks(&(0.0..=1.0), 5), [1.0, 2.0, 5.0, 10.0], "one decade");
+        assert_eq!(ticks(&(-1.0..=2.0), 5), [0.1, 1.0, 10.0, 100.0], "three decades");
+        assert!(ticks(&(0.0..=6.0), 6).len() <= 6, "too many for six decades");
     }
 
     #[test]
-    fn both_axes_are_logarithmic() {
-        let rect = Rect::from_min_size(Pos2::ZERO, Vec2::new(300.0, HEIGHT));
+    fn both_axes_are_logarithmic_and_hold_the_goals() {
         let points = [(1.0, 80.0), (16.0, 20.0)]
             .map(|(samples, percent)| Point { samples, noise: noise(percent, 0.5) });
-        let axes = Axes::new(rect, &points, 256.0, Some(1.0));
-        let [a, b, c] = [(1.0, 80.0), (4.0, 40.0), (16.0, 20.0)].map(|(x, y)| axes.at(x, y));
-        let (first, second) = (b - a, c - b);
-        assert!((first - second).length() < 0.01, "{first:?} and {second:?} for equal ratios");
-        assert!(axes.area.contains(axes.at(256.0, 1.0)), "the goals are out of sight");
+        let [a, b, c] = [(1.0, 80.0), (4.0, 40.0), (16.0, 20.0)].map(|(x, y)| place(x, y));
+        for axis in [0, 1] {
+            let (first, second) = (b[axis] - a[axis], c[axis] - b[axis]);
+            assert!((first - second).abs() < 1e-9, "{first} and {second} for equal ratios");
+        }
+        let (across, up) = spans(&points, Goal { samples: 256.0, percent: Some(1.0) });
+        let [x, y] = place(256.0, 1.0);
+        assert!(across.contains(&x) && up.contains(&y), "{x}, {y} is out of sight");
+        let (_, up) = spans(&[], Goal { samples: 256.0, percent: None });
+        assert!(up.contains(&0.0) && up.contains(&2.0), "nothing is known: {up:?}");
     }
 }

@@ -21,7 +21,10 @@ pub(super) fn lens_diagram(
     painter.rect_filled(rect, 4.0, ui.visuals().extreme_bg_color);
 
     let focus = orbit::focal_distance(camera);
-    let plot = Plot::new(rect.shrink2(Vec2::new(14.0, 10.0)), focus);
+    // Below it there is room for a line of text.
+    let area =
+        Rect::from_min_max(rect.min + Vec2::new(14.0, 10.0), rect.max - Vec2::new(14.0, 20.0));
+    let plot = Plot::new(area, focus);
     let accent = theme::accent(ui.visuals());
     let line = Stroke::new(1.0, ui.visuals().weak_text_color());
     let font = TextStyle::Small.resolve(ui.style());

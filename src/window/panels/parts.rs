@@ -109,7 +109,9 @@ fn name_field(
     let Some(Renaming { part, index, mut text, is_new }) = renaming.take() else { return };
     let mut refused = None;
     let done = row(ui, label, "", |ui| {
-        let field = egui::TextEdit::singleline(&mut text).desired_width(ui.available_width());
+        let field = egui::TextEdit::singleline(&mut text)
+            .align(egui::Align2::LEFT_CENTER)
+            .desired_width(ui.available_width());
         let response = ui.add(field).accessible_name(format!("{label} name"));
         if is_new {
             response.request_focus();

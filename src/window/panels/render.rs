@@ -122,10 +122,8 @@ pub(in crate::window) fn render_ui(
             row(ui, name, "", |ui| ui.label(value));
         }
     }
-    if 1 < facts.convergence.noise.len() {
-        subheading(ui, "Noise by samples");
-        convergence_ui(ui, &facts.convergence, render.samples, limits.noise_percent);
-    }
+    subheading(ui, "Noise by samples");
+    convergence_ui(ui, &facts.convergence, render.samples, limits.noise_percent);
 }
 
 /// Switches with a figure each: stop after a time, stop at a noise.

@@ -47,24 +47,24 @@ pub(super) const OBJECTS: Panel =
     |ui, bench| objects_ui(ui, &mut bench.scene, &mut bench.selection);
 pub(super) const DISPLAY: Panel =
     |ui, bench| display_ui(ui, &mut bench.scene.tone_mapping, &mut bench.display, None);
-pub(super) const RENDER: Panel = |ui, bench| {
+pub(super) const RENDER: Panel =
+    |ui, bench| render_with(ui, bench, &[(1, noise(20.0)), (4, noise(10.0))]);
+
+/// The group Render with so many estimates of the noise.
+pub(super) fn render_with(ui: &mut egui::Ui, bench: &mut Bench, noise: &[(u32, Noise)]) {
     let facts = RenderFacts {
         n_processors: 4,
         accelerators: &["kd-tree", "brute-force"],
         tree: vec![("Nodes", "12".to_owned())],
-        convergence: Convergence {
-            noise: &[(1, noise(20.0)), (4, noise(10.0))],
-            seconds: 1.0,
-            is_rendering: true,
-        },
+        convergence: Convergence { noise, seconds: 1.0, is_rendering: true },
     };
     let (size, accelerator) = (&mut bench.size_mode, &mut bench.accelerator);
     let limits = &mut bench.limits;
     let threads = &mut bench.n_threads;
     render_ui(ui, &mut bench.scene.render, size, accelerator, threads, limits, &facts);
-};
+}
 
-const fn noise(percent: f64) -> Noise {
+pub(super) const fn noise(percent: f64) -> Noise {
     Noise { percent, uncertainty: 0.1, ratio: 0.5, step: None }
 }
 pub(super) const ALL: [Panel; 7] = [CAMERA, LIGHTS, MATERIALS, TEXTURES, OBJECTS, DISPLAY, RENDER];

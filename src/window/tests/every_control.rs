@@ -108,6 +108,8 @@ fn window_at_rest(path: &std::path::Path, size: [f32; 2]) -> Harness<'static, Ap
     let mut harness = window(path, size);
     let folder = path.parent().unwrap().to_owned();
     let app = harness.state_mut();
+    // As where the system has no dialogs: a box opens.
+    app.dialogs.chooser = Box::new(|_, _| Box::pin(std::future::ready(None)));
     app.interface.export.folder = Some(folder);
     // A picture that costs nothing.
     app.interface.size_mode = SizeMode::Fixed;
@@ -151,7 +153,6 @@ fn has_effect(harness: &mut Harness<'_, App>, control: &Control) -> bool {
     false
 }
 
-/// The bars and both menus; what asks the system for a file is left out.
 #[test]
 fn every_button_of_the_bars_and_every_line_of_the_menus_does_something() {
     const SIZE: [f32; 2] = [1024.0, 700.0];
@@ -177,10 +178,6 @@ fn every_button_of_the_bars_and_every_line_of_the_menus_does_something() {
         let mut lines = controls(&harness);
         if menu.is_some() {
             lines.retain(|line| !bars.contains(line));
-            // They wait for a dialog of the system.
-            lines.retain(|(_, name, _)| {
-                !["Open…", "Save as…"].iter().any(|no| name.starts_with(no))
-            });
         }
         drop(harness);
         for line in lines {
@@ -190,5 +187,5 @@ fn every_button_of_the_bars_and_every_line_of_the_menus_does_something() {
             n_driven += 1;
         }
     }
-    assert!(32 < n_driven, "only {n_driven} were driven");
+    assert!(35 < n_driven, "only {n_driven} were driven");
 }

@@ -1,7 +1,9 @@
 //! Keys beside menus, and keys that are held.
 
 use super::whole::{scene_file, wait_until, window, window_with};
+use crate::loader::Source;
 use crate::window::app::App;
+use crate::window::state::Remembered;
 use egui::{Event, Key, Modifiers, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -119,4 +121,26 @@ fn keys_come_from_the_file_and_what_is_wrong_in_it_is_told() {
         let radius = harness.state().document.description.camera.aperture_radius;
         assert_eq!(radius, if closes { 0.0 } else { open }, "{key:?} leaves another lens");
     }
+}
+
+#[test]
+fn text_and_controls_grow_shrink_and_are_as_large_at_the_next_start() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&scene_file(folder.path()), SIZE);
+    assert_eq!(harness.ctx.pixels_per_point(), 1.0, "at first");
+    for (key, scale) in [(Key::Plus, 1.1), (Key::Equals, 1.2), (Key::Minus, 1.1)] {
+        harness.key_press_modifiers(Modifiers::COMMAND, key);
+        harness.run_steps(3);
+        assert_eq!(harness.ctx.pixels_per_point(), scale, "after {key:?}");
+        assert_eq!(harness.state().interface.scale, scale, "after {key:?}");
+    }
+    let remembered = Remembered::of(&harness.state().interface);
+    let ctx = egui::Context::default();
+    let source = Source::Gallery("pyramid");
+    let next = App::new(&ctx, remembered, source, None).unwrap();
+    ctx.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear();
+    assert_eq!((next.interface.scale, ctx.zoom_factor()), (1.1, 1.1), "at the next start");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num0);
+    harness.run_steps(3);
+    assert_eq!(harness.ctx.pixels_per_point(), 1.0, "as the system has it");
 }

@@ -1,9 +1,10 @@
 //! Nothing overlaps, is cut off or leaves the window, small and large, menus and boxes too.
 
-use super::whole::{scene_file, wait_until, window_at};
+use super::whole::{scene_file, wait_until, window_at, window_of};
 use crate::window::app::App;
 use crate::window::dialogs::Purpose;
 use crate::window::files::Pending;
+use crate::window::state::{InterfaceState, Remembered};
 use egui::{Key, Modifiers, Rect, Role, ThemePreference};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -261,6 +262,22 @@ fn boxes_and_pages_are_whole_and_their_parts_lie_apart() {
             parts.retain(|(name, _)| !path.ends_with(name) && !name.starts_with('/'));
             assert_apart(&parts, &what);
         }
+    }
+}
+
+#[test]
+fn groups_that_open_leave_the_panel_as_wide_as_it_was_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene_file(folder.path());
+    for width in [324.0, 328.0, 420.0, 520.0] {
+        let state = InterfaceState { panel_width: width, ..InterfaceState::default() };
+        let mut harness = window_of(&path, [1280.0, 900.0], Remembered::of(&state));
+        let before = harness.get_by_role_and_label(Role::Canvas, "Picture").rect();
+        assert_eq!(harness.state().interface.panel_width, width, "at first");
+        open_all(&mut harness);
+        let after = harness.get_by_role_and_label(Role::Canvas, "Picture").rect();
+        assert_eq!(after, before, "the picture beside a panel of {width}");
+        assert_eq!(harness.state().interface.panel_width, width, "with all groups open");
     }
 }
 

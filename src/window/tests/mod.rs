@@ -1,5 +1,6 @@
 //! The window driven by label and role, without a display.
 
+mod asking;
 mod bench;
 mod disks;
 mod editing;

@@ -1,16 +1,18 @@
 //! Each control of the panels changes the parameter that it names, and no other.
 
 use super::bench::{
-    ALL, CAMERA, DISPLAY, LIGHTS, MATERIALS, OBJECTS, RENDER, TEXTURES, choose, harness, press,
-    slide, type_figure,
+    ALL, Bench, CAMERA, DISPLAY, LIGHTS, MATERIALS, OBJECTS, RENDER, TEXTURES, bench, choose,
+    harness, noise, press, render_with, slide, type_figure,
 };
 use super::small_scene;
+use crate::render::Noise;
 use crate::scene::description::{
     ColorOrTexture, IntegratorKind, LightKind, ToneOperator, WardForm,
 };
 use crate::window::panels::SizeMode;
 use crate::window::views::View;
 use egui::Role;
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 #[test]
@@ -19,6 +21,43 @@ fn showing_a_panel_changes_nothing() {
         let mut harness = harness(panel);
         harness.run();
         assert_eq!(harness.state().scene, small_scene(), "a panel edits by being shown");
+    }
+}
+
+#[test]
+fn the_graph_of_noise_keeps_its_place_before_there_is_anything_to_show() {
+    let estimates = [(1, noise(40.0)), (2, noise(20.0)), (8, noise(7.0))];
+    let end_of = |noise: &'static [(u32, Noise)]| {
+        let harness = Harness::builder().with_size([320.0, 1200.0]).build_ui_state(
+            move |ui, bench: &mut Bench| {
+                render_with(ui, bench, noise);
+                ui.label("what comes next");
+            },
+            bench(small_scene()),
+        );
+        let graph = harness.get_by(|node| {
+            node.role() == Role::Image && node.label().unwrap_or_default().starts_with("noise")
+        });
+        (graph.rect(), harness.get_by_label("what comes next").rect())
+    };
+    let all: &'static [(u32, Noise)] = Box::leak(Box::new(estimates));
+    let known = end_of(all);
+    for n_estimates in [0, 1] {
+        assert_eq!(end_of(&all[..n_estimates]), known, "after {n_estimates} estimates");
+    }
+}
+
+#[test]
+fn the_graph_tells_each_estimate_under_the_cursor() {
+    let mut harness = harness(RENDER);
+    let graph = harness.get_by_label_contains("noise 20 ± 2 % at 1 samples, 10 ± 1 % at 4 samples");
+    let rect = graph.rect();
+    // One sample is at the left edge, four are at a quarter of the way to the goal of 256.
+    for (share, told) in [(0.02, "20 ± 2 % at 1 samples"), (0.3, "10 ± 1 % at 4 samples")] {
+        harness.hover_at(rect.left_center() + egui::vec2(rect.width() * share, 0.0));
+        harness.run_steps(6);
+        let is_told = harness.query_by_label(told).is_some();
+        assert!(is_told, "{told:?} is not told at {share} of the width");
     }
 }
 

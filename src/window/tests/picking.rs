@@ -94,3 +94,53 @@ fn escape_lets_go_of_a_click_that_was_asked_for() {
     click_on_ball(&mut harness);
     assert_eq!(harness.state().document.description, before, "the light went there");
 }
+
+#[test]
+fn a_light_is_chosen_by_its_mark_with_a_click_and_with_a_drag() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = ready(folder.path());
+    let app = harness.state_mut();
+    app.interface.lights_shown = true;
+    let lights = &mut app.document.description.lights;
+    for (name, position) in [("rim", [-0.8, 0.4, 0.0]), ("beyond", [60.0, 0.0, 0.0])] {
+        let mut light = lights[0].clone();
+        (light.name, light.position) = (name.to_owned(), position);
+        lights.push(light);
+    }
+    lights[0].position = [0.8, 0.4, 0.0];
+    harness.run_steps(8);
+    let mark = |harness: &Harness<'_, App>, label: &str| {
+        harness.get_by_role_and_label(Role::Button, label).rect().center()
+    };
+    let chosen = |harness: &Harness<'_, App>| harness.state().interface.selection.light;
+    assert_eq!(chosen(&harness), 0, "at first");
+    for (label, expected) in [
+        ("Light rim in the picture", 1),
+        ("Light beyond beyond the picture", 2),
+        ("Light key in the picture", 0),
+    ] {
+        let at = mark(&harness, label);
+        harness.drag_at(at);
+        harness.run_steps(1);
+        harness.drop_at(at);
+        harness.run_steps(2);
+        assert_eq!(chosen(&harness), expected, "after a click on {label}");
+        harness.run_steps(8);
+    }
+    let at = mark(&harness, "Light rim in the picture");
+    harness.drag_at(at);
+    harness.run_steps(1);
+    for step in [8.0, 16.0] {
+        harness.hover_at(at + egui::vec2(step, 0.0));
+        harness.run_steps(1);
+    }
+    assert_eq!(chosen(&harness), 1, "while it is dragged");
+    harness.drop_at(at + egui::vec2(16.0, 0.0));
+    harness.run_steps(2);
+    assert_eq!(chosen(&harness), 1, "after a drag");
+    let positions = |app: &App| -> Vec<f64> {
+        app.document.description.lights.iter().map(|light| light.position[0]).collect()
+    };
+    let [key, rim, beyond] = positions(harness.state())[..] else { panic!("other lights") };
+    assert!((key, beyond) == (0.8, 60.0) && -0.8 < rim, "it moved {key}, {rim}, {beyond}");
+}

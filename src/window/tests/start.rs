@@ -1,11 +1,14 @@
 //! The start page, what is remembered, and messages that stay until they are read.
 
-use super::whole::{scene_file, wait_until, window, window_of};
+use super::whole::{harness_of, scene_file, wait_until, window, window_of, window_with};
 use crate::io::gallery::GALLERY;
 use crate::loader::Source;
+use crate::session::Phase;
+use crate::window::app::App;
 use crate::window::state::{InterfaceState, Remembered};
 use egui::{Key, Modifiers, Role, ThemePreference};
 use egui_kittest::kittest::Queryable as _;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 const SIZE: [f32; 2] = [1400.0, 900.0];
@@ -128,4 +131,97 @@ fn errors_stay_until_they_are_closed_however_many_there_are() {
         harness.run_steps(2);
     }
     assert!(harness.query_by_label_contains("broken-").is_none(), "a closed message is back");
+}
+
+/// The kept pictures.
+fn kept(own: &std::path::Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(own.join("recent")).into_iter().flatten();
+    entries.map(|entry| entry.unwrap().path()).collect()
+}
+
+#[test]
+fn a_file_that_was_opened_has_its_picture_on_the_start_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, own) = (scene_file(folder.path()), folder.path().join("own"));
+    let mut harness = window_with(&path, SIZE, Some(own.clone()));
+    wait_until(&mut harness, |_| kept(&own).len() == 1);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::G);
+    wait_until(&mut harness, |app| app.thumbnails.recent_shown() == [true]);
+    let picture = crate::window::recent::read(&kept(&own)[0]).expect("a picture of ours");
+    // The ball stands in the middle of a black background.
+    let middle = picture.pixels[45 * 160 + 80];
+    assert_ne!(picture.pixels[0], middle, "a picture of nothing");
+    // The next window has it at once, before the file is opened again.
+    drop(harness);
+    let other = folder.path().join("other.toml");
+    std::fs::copy(&path, &other).unwrap();
+    let mut before = InterfaceState::default();
+    before.remember_file(path);
+    let ctx = egui::Context::default();
+    let remembered = Remembered::of(&before);
+    let app = App::new(&ctx, remembered, Source::File(other), Some(own.clone())).unwrap();
+    let mut harness = harness_of(app, SIZE, 1.0);
+    wait_until(&mut harness, |_| kept(&own).len() == 2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::G);
+    wait_until(&mut harness, |app| app.thumbnails.recent_shown() == [true, true]);
+}
+
+#[test]
+fn a_picture_that_is_damaged_or_gone_leaves_its_place_empty() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, own) = (scene_file(folder.path()), folder.path().join("own"));
+    let mut harness = window_with(&path, SIZE, Some(own.clone()));
+    wait_until(&mut harness, |app| app.recent_pictures.is_kept_at(4));
+    let picture = kept(&own).remove(0);
+    let whole = std::fs::read(&picture).unwrap();
+    let other_size = crate::io::output::encode_png((2, 1), &[9; 6], &[]).unwrap();
+    let broken = [&b"no picture"[..], &whole[..whole.len() / 2], &other_size, &[]];
+    for (n_before, bytes) in broken.into_iter().enumerate() {
+        std::fs::write(&picture, bytes).unwrap();
+        harness.state_mut().thumbnails.look_again();
+        harness.state_mut().interface.start_shown = true;
+        wait_until(&mut harness, |app| app.thumbnails.recent_shown() == [false]);
+        let line = harness.query_by_role_and_label(Role::Button, "small.toml");
+        assert!(line.is_some(), "{n_before}: the file is not offered");
+        std::fs::write(&picture, &whole).unwrap();
+        harness.state_mut().thumbnails.look_again();
+        wait_until(&mut harness, |app| app.thumbnails.recent_shown() == [true]);
+    }
+}
+
+#[test]
+fn edits_that_are_not_saved_are_on_no_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, own) = (scene_file(folder.path()), folder.path().join("own"));
+    let mut harness = window_with(&path, SIZE, Some(own.clone()));
+    let is_done_at = |app: &App, samples| {
+        let frame = app.work.session.latest();
+        let is_last =
+            frame.is_some_and(|frame| frame.samples == samples && app.work.is_current(&frame));
+        is_last && app.work.session.status().phase == Phase::Done
+    };
+    wait_until(&mut harness, |app| is_done_at(app, 4) && app.recent_pictures.is_kept_at(4));
+    let file = kept(&own).remove(0);
+    let before = std::fs::read(&file).unwrap();
+    let scene = &mut harness.state_mut().document.description;
+    // With so many more samples that a picture would be kept.
+    (scene.objects[0].enabled, scene.render.samples) = (false, 64);
+    wait_until(&mut harness, |app| is_done_at(app, 64));
+    assert!(harness.state().recent_pictures.is_kept_at(4), "the edit is on the picture");
+    assert_eq!(std::fs::read(&file).unwrap(), before, "the edit is on the picture");
+    // As many as were kept: what is saved counts all the same.
+    let scene = &mut harness.state_mut().document.description;
+    (scene.lights[0].power, scene.render.samples) = ([50.0; 3], 4);
+    wait_until(&mut harness, |app| is_done_at(app, 4));
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    wait_until(&mut harness, |app| !app.document.is_dirty());
+    wait_until(&mut harness, |_| std::fs::read(&file).is_ok_and(|bytes| bytes != before));
+}
+
+#[test]
+fn a_file_named_from_the_current_folder_is_remembered_by_its_whole_path() {
+    let mut harness = window(std::path::Path::new("scenes/pyramid.toml"), SIZE);
+    harness.run_steps(2);
+    let whole = std::path::absolute("scenes/pyramid.toml").unwrap();
+    assert_eq!(harness.state().interface.recent, [whole], "it depends on the folder");
 }

@@ -219,3 +219,30 @@ fn a_picture_keeps_the_scenes_shape_in_a_window_of_any_other() {
         assert!(full.abs() <= 1.0 && 10.0 < free, "{width}x{height} in {room:?}");
     }
 }
+
+#[test]
+fn what_is_sharp_is_marked_while_the_lens_is_dragged_and_no_longer() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&scene_file(folder.path()), [1024.0, 700.0]);
+    let marks = |harness: &Harness<'_, App>| harness.state().marks_sharpness(&harness.ctx);
+    assert!(!marks(&harness), "at rest");
+    for (slider, is_lens) in [("Aperture", true), ("Field of view", false), ("Focus", true)] {
+        let at = harness.get_by_role_and_label(Role::Slider, slider).rect().center();
+        harness.drag_at(at);
+        harness.run_steps(1);
+        for step in [6.0, 12.0] {
+            harness.hover_at(at + egui::vec2(step, 0.0));
+            harness.run_steps(1);
+        }
+        assert_eq!(marks(&harness), is_lens, "while {slider} is dragged");
+        harness.drop_at(at + egui::vec2(12.0, 0.0));
+        harness.run_steps(2);
+        assert!(!marks(&harness), "after {slider} was dragged");
+    }
+    // A key is no hand that drags, also while its edit is the newest.
+    harness.key_press(Key::D);
+    harness.step();
+    assert!(!marks(&harness), "after a key");
+    harness.run_steps(3);
+    assert!(!marks(&harness), "after a key");
+}

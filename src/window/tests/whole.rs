@@ -83,6 +83,7 @@ pub(super) fn harness_of(app: App, size: [f32; 2], per_point: f32) -> Harness<'s
             theme::install(ui.ctx());
             // The app was made with another context than the harness's.
             ui.ctx().set_theme(theme);
+            ui.ctx().options_mut(|options| options.zoom_with_keyboard = false);
         }
         app.take_news(ui.ctx());
         app.frame_ui(ui);

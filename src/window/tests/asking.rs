@@ -1,0 +1,141 @@
+//! What asks the system for a file, and what becomes of its answer.
+
+use super::whole::{scene_file, wait_until, window};
+use crate::window::app::App;
+use crate::window::dialogs::Purpose;
+use egui::{Key, Modifiers, Role};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
+
+const SIZE: [f32; 2] = [1400.0, 900.0];
+
+/// Purposes and suggestions that a dialog was opened with.
+type Asked = Arc<Mutex<Vec<(Purpose, String)>>>;
+
+/// Answers every dialog with that path at once, and notes what it was asked.
+fn answer(harness: &mut Harness<'_, App>, path: Option<PathBuf>) -> Asked {
+    let asked = Asked::default();
+    let noted = Arc::clone(&asked);
+    harness.state_mut().dialogs.chooser = Box::new(move |purpose, suggestion| {
+        noted.lock().unwrap().push((purpose, suggestion.to_owned()));
+        Box::pin(std::future::ready(path.clone()))
+    });
+    asked
+}
+
+fn press(harness: &mut Harness<'_, App>, label: &str) {
+    harness
+        .get_by(|node| {
+            let label_of = node.label().unwrap_or_default();
+            node.role() == Role::Button && label_of.starts_with(label)
+        })
+        .click();
+    harness.run_steps(4);
+}
+
+/// Gets to a control and uses it.
+type Way = fn(&mut Harness<'_, App>);
+
+#[test]
+fn whatever_asks_for_a_scene_opens_the_one_that_is_chosen() {
+    let ways: [(&str, Way); 3] = [
+        ("the menu", |harness| {
+            press(harness, "File");
+            press(harness, "Open…");
+        }),
+        ("the start page", |harness| {
+            harness.key_press_modifiers(Modifiers::COMMAND, Key::G);
+            harness.run_steps(3);
+            press(harness, "Open a file…");
+        }),
+        ("its key", |harness| harness.key_press_modifiers(Modifiers::COMMAND, Key::O)),
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    let other = folder.path().join("other.toml");
+    let path = scene_file(folder.path());
+    std::fs::copy(&path, &other).unwrap();
+    for (what, way) in ways {
+        let mut harness = window(&path, SIZE);
+        let asked = answer(&mut harness, Some(other.clone()));
+        way(&mut harness);
+        wait_until(&mut harness, |app| app.files.title == "other");
+        assert_eq!(*asked.lock().unwrap(), [(Purpose::Open, String::new())], "{what}");
+        let app = harness.state();
+        assert_eq!(app.files.scene_path.as_ref(), Some(&other), "{what}");
+        assert!(!app.interface.start_shown, "{what}: the page hides the scene");
+    }
+}
+
+#[test]
+fn whatever_asks_where_to_save_saves_there() {
+    let ways: [(&str, Way); 2] = [
+        ("the menu", |harness| {
+            press(harness, "File");
+            press(harness, "Save as…");
+        }),
+        ("its key", |harness| {
+            let modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
+            harness.key_press_modifiers(modifiers, Key::S);
+        }),
+    ];
+    for (what, way) in ways {
+        let folder = tempfile::tempdir().unwrap();
+        let path = scene_file(folder.path());
+        let copy = folder.path().join("copy.toml");
+        let mut harness = window(&path, SIZE);
+        let asked = answer(&mut harness, Some(copy.clone()));
+        harness.key_press(Key::E);
+        harness.run_steps(2);
+        way(&mut harness);
+        wait_until(&mut harness, |app| !app.document.is_dirty());
+        assert_eq!(
+            *asked.lock().unwrap(),
+            [(Purpose::SaveScene, "small.toml".to_owned())],
+            "{what}"
+        );
+        let saved = |path: &PathBuf| {
+            crate::io::scene_file::parse(&std::fs::read_to_string(path).unwrap(), &[]).unwrap()
+        };
+        assert_eq!(saved(&copy), harness.state().document.description, "{what}: another scene");
+        assert_eq!(saved(&path).tone_mapping.exposure, 0.0, "{what}: the first file is written");
+        assert_eq!(harness.state().files.scene_path.as_ref(), Some(&copy), "{what}");
+    }
+}
+
+#[test]
+fn the_folder_of_pictures_is_chosen_in_the_box_that_renders() {
+    let folder = tempfile::tempdir().unwrap();
+    let (before, after) = (folder.path().join("before"), folder.path().join("after"));
+    let mut harness = window(&scene_file(folder.path()), SIZE);
+    harness.state_mut().interface.export.folder = Some(before.clone());
+    let asked = answer(&mut harness, Some(after.clone()));
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::F12);
+    harness.run_steps(3);
+    press(&mut harness, "Choose…");
+    wait_until(&mut harness, |app| app.interface.export.folder.as_ref() == Some(&after));
+    let suggestion = before.display().to_string();
+    assert_eq!(*asked.lock().unwrap(), [(Purpose::PictureFolder, suggestion)], "another question");
+}
+
+#[test]
+fn where_the_system_has_no_dialog_the_path_is_typed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene_file(folder.path());
+    let other = folder.path().join("other.toml");
+    std::fs::copy(&path, &other).unwrap();
+    let mut harness = window(&path, SIZE);
+    answer(&mut harness, None);
+    press(&mut harness, "File");
+    press(&mut harness, "Open…");
+    let since = std::time::Instant::now();
+    while harness.query_by_role_and_label(Role::TextInput, "Path").is_none() {
+        assert!(since.elapsed() < super::whole::PATIENCE, "no box for a path");
+        harness.step();
+    }
+    harness.event(egui::Event::Text(other.display().to_string()));
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    wait_until(&mut harness, |app| app.files.title == "other");
+}
