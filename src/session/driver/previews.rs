@@ -15,8 +15,7 @@ const PATIENCE_SECS: f64 = 0.15;
 
 impl<R: Renderer> Driver<'_, R> {
     /// The coarse picture, which only closing and another scene stop; then finer ones while a full pass is
-    /// far away,
-    /// which give way to a newer job.
+    /// far away, which give way to a newer job.
     pub(super) fn preview(&mut self, work: &mut Work<R::World>) {
         let n_pixels = u64::from(work.job.width) * u64::from(work.job.height);
         let wanted = work.maps.absent(self.shared.orders().wanted);
