@@ -59,12 +59,19 @@ pub fn tiles_together(n_tiles: usize, n_samples: u32, n_threads: usize) -> usize
     (of_wave as usize).min(n_tiles / (SHARES * n_threads.max(1))).max(1)
 }
 
-/// By how much a preview is smaller than the picture: the least power of two up to 64 at which one
-/// sample a pixel fits `budget_secs`, at a measured number of samples a second.
+/// By how much a preview is smaller than the picture: the least number up to 64 at which one sample a
+/// pixel fits `budget_secs`, at a measured number of samples a second.
 pub fn preview_scale(n_pixels: u64, samples_per_sec: f64, budget_secs: f64) -> u32 {
+    const COARSEST: f64 = 64.0;
     let affordable = samples_per_sec * budget_secs;
-    let fits = |scale: &u32| n_pixels as f64 / f64::from(scale * scale) <= affordable;
-    [1, 2, 4, 8, 16, 32].into_iter().find(fits).unwrap_or(64)
+    let scale = (n_pixels as f64 / affordable).sqrt().ceil();
+    // Not a number where there is nothing to do and nothing done.
+    (scale.clamp(1.0, COARSEST) as u32).max(1)
+}
+
+/// By how much the next preview is smaller, after one by `scale`; 1 where the picture itself comes soon.
+pub fn finer_scale(scale: u32) -> u32 {
+    if scale > 4 { (2 * scale + 2) / 5 } else { 1 }
 }
 
 #[cfg(test)]
@@ -112,7 +119,25 @@ mod tests {
     #[test]
     fn previews_fit_their_budget() {
         assert_eq!(preview_scale(1_000_000, 1e9, 0.02), 1, "fast enough for all");
-        assert_eq!(preview_scale(921_600, 5e6, 0.02), 4, "57600 of 100000");
+        assert_eq!(preview_scale(921_600, 5e6, 0.02), 4, "57600 of 100000, 3 takes 102400");
+        assert_eq!(preview_scale(921_600, 3e6, 0.02), 4, "57600 of 60000");
+        assert_eq!(preview_scale(921_600, 2e6, 0.02), 5, "36864 of 40000");
         assert_eq!(preview_scale(921_600, 1.0, 0.02), 64, "never coarser than 64");
+        assert_eq!(preview_scale(921_600, 0.0, 0.02), 64, "nor where nothing is done");
+        assert_eq!(preview_scale(0, 0.0, 0.02), 1, "of nothing");
+    }
+
+    /// Each takes at most nine times as long as the one before, but for the picture itself.
+    #[test]
+    fn finer_previews_lead_to_the_picture() {
+        for coarsest in 1..=64 {
+            let mut scale = coarsest;
+            while scale > 1 {
+                let next = finer_scale(scale);
+                assert!(next < scale, "{next} after {scale}");
+                assert!(next == 1 || 9 * next * next >= scale * scale, "{next} after {scale}");
+                scale = next;
+            }
+        }
     }
 }

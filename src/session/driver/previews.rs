@@ -14,7 +14,8 @@ const PREVIEW_SECS: f64 = 0.016;
 const PATIENCE_SECS: f64 = 0.15;
 
 impl<R: Renderer> Driver<'_, R> {
-    /// The coarse picture, which only closing and another scene stop; then finer ones while a full pass is far away,
+    /// The coarse picture, which only closing and another scene stop; then finer ones while a full pass is
+    /// far away,
     /// which give way to a newer job.
     pub(super) fn preview(&mut self, work: &mut Work<R::World>) {
         let n_pixels = u64::from(work.job.width) * u64::from(work.job.height);
@@ -38,7 +39,7 @@ impl<R: Renderer> Driver<'_, R> {
             if is_near {
                 return;
             }
-            scale = if scale > 4 { scale / 4 } else { 1 };
+            scale = plan::finer_scale(scale);
         }
     }
 
