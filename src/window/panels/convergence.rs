@@ -144,7 +144,8 @@ fn graph(ui: &mut Ui, points: &[Point], goal: Goal, is_rendering: bool) -> egui:
             plot.set_plot_bounds_y(up);
             draw_goal(plot, goal, &look);
             draw_course(plot, points, goal, is_rendering, &look);
-            if let Some(point) = plot.pointer_coordinate().and_then(|at| near(at.x)) {
+            let hovered = plot.response().hover_pos().map(|at| plot.plot_from_screen(at));
+            if let Some(point) = hovered.and_then(|at| near(at.x)) {
                 let marker = Points::new("under the cursor", vec![point.place()]);
                 plot.points(marker.radius(4.5).color(look.strong).filled(false).allow_hover(false));
             }

@@ -52,12 +52,20 @@ fn the_graph_tells_each_estimate_under_the_cursor() {
     let mut harness = harness(RENDER);
     let graph = harness.get_by_label_contains("noise 20 ± 2 % at 1 samples, 10 ± 1 % at 4 samples");
     let rect = graph.rect();
+    let n_rings = |harness: &Harness<'_, Bench>| {
+        let is_ring = |shape: &egui::Shape| matches!(shape, egui::Shape::Circle(circle) if circle.fill.a() == 0);
+        harness.output().shapes.iter().filter(|clipped| is_ring(&clipped.shape)).count()
+    };
+    harness.hover_at(rect.center() - egui::vec2(0.0, 200.0));
+    harness.run_steps(6);
+    assert_eq!(n_rings(&harness), 0, "an estimate is marked, though none is under the cursor");
     // One sample is at the left edge, four are at a quarter of the way to the goal of 256.
     for (share, told) in [(0.02, "20 ± 2 % at 1 samples"), (0.3, "10 ± 1 % at 4 samples")] {
         harness.hover_at(rect.left_center() + egui::vec2(rect.width() * share, 0.0));
         harness.run_steps(6);
         let is_told = harness.query_by_label(told).is_some();
         assert!(is_told, "{told:?} is not told at {share} of the width");
+        assert_eq!(n_rings(&harness), 1, "the estimate is not marked");
     }
 }
 
