@@ -2,7 +2,7 @@
 
 use crate::io::scene_file::{self, ParameterPath};
 use crate::scene::description::SceneDescription;
-use egui::{Id, Response};
+use egui::{Id, Response, Sense};
 
 /// Ties the control of that name to a parameter of the scene: a right click resets it or copies
 /// its path. An empty path is no parameter's.
@@ -14,6 +14,9 @@ pub(super) fn parameter(response: &Response, label: &str, path: &str) {
     super::tests::parameters::note(&response.ctx, label, path);
     #[cfg(not(test))]
     let _ = label;
+    // A slider by itself feels drags alone.
+    let clickable = (!response.sense.senses_click()).then(|| response.interact(Sense::click()));
+    let response = clickable.as_ref().unwrap_or(response);
     // Beside the popup that lists and swatches open themselves.
     let menu = egui::Popup::context_menu(response).id(response.id.with("parameter"));
     menu.show(|ui| {

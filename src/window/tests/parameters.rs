@@ -273,14 +273,17 @@ fn a_figure_or_a_switch_changes_its_own_parameter_and_no_other() {
 
 #[test]
 fn a_right_click_resets_a_parameter_to_the_default_of_the_file() {
-    let mut scene = full_scene();
-    scene.camera.aperture_radius = 0.3;
-    let mut harness = harness_of(ALL[0], bench(scene));
-    harness.get_by_role_and_label(Role::SpinButton, "Aperture").click_secondary();
-    harness.run();
-    harness.get_by_role_and_label(Role::Button, "Reset").click();
-    harness.run();
-    assert_eq!(harness.state().scene.camera.aperture_radius, 0.0, "not at the file's default");
+    let mut harness = harness_of(ALL[0], bench(full_scene()));
+    for control in [Role::SpinButton, Role::Slider] {
+        harness.state_mut().scene.camera.aperture_radius = 0.3;
+        harness.run();
+        harness.get_by_role_and_label(control, "Aperture").click_secondary();
+        harness.run();
+        harness.get_by_role_and_label(Role::Button, "Reset").click();
+        harness.run();
+        let radius = harness.state().scene.camera.aperture_radius;
+        assert_eq!(radius, 0.0, "not the file's default after a click on the {control:?}");
+    }
     harness.get_by_role_and_label(Role::SpinButton, "Eye X").click_secondary();
     harness.run();
     harness.get_by_role_and_label(Role::Button, "Reset").click();
