@@ -9,7 +9,7 @@ use crate::render::{RenderJob, plan};
 use crate::session::{Frame, Renderer, Wanted, lock};
 
 /// A preview is made as fine as fits this.
-const PREVIEW_SECS: f64 = 0.016;
+const PREVIEW_SECS: f64 = 0.013;
 /// A full-size pass that takes longer than this is preceded by finer previews.
 const PATIENCE_SECS: f64 = 0.15;
 
