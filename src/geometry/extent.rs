@@ -1,6 +1,8 @@
 //! The true bounds of what is in the world, as people want to read them: exact for every shape at
 //! any place, where an accelerator is content with a box around a turned box.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use crate::geometry::{Geometry, Instance, Shape};
@@ -12,11 +14,25 @@ type Extent = [DVec3; 2];
 impl Geometry {
     /// The smallest box around every bounded object; `None` without any.
     pub fn extent(&self) -> Option<Extent> {
-        self.instances().iter().filter_map(Instance::extent).reduce(union)
+        let instances = self.instances();
+        // Copies in the same place, of which there may be thousands, are measured once.
+        let is_new = |(index, instance): &(usize, &Instance)| {
+            *index == 0 || !instance.is_copy_of(&instances[index - 1])
+        };
+        let new = instances.iter().enumerate().filter(is_new);
+        new.filter_map(|(_, instance)| instance.extent()).reduce(union)
     }
 }
 
 impl Instance {
+    /// Whether it is the same mesh in the same place.
+    fn is_copy_of(&self, other: &Self) -> bool {
+        let (Shape::Mesh(mesh), Shape::Mesh(others)) = (self.shape(), other.shape()) else {
+            return false;
+        };
+        Arc::ptr_eq(mesh, others) && self.transform() == other.transform()
+    }
+
     /// The smallest box around it in the world; `None` where it is infinite or empty.
     pub fn extent(&self) -> Option<Extent> {
         let transform = self.transform();
@@ -76,7 +92,11 @@ fn disk_reach(transform: &Transform, axis: DVec3, radius: f64) -> [f64; 3] {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
+    use crate::geometry::mesh::Mesh;
+    use crate::geometry::{AcceleratorKind, TracedMesh};
 
     const TURNED: DVec3 = DVec3::new(20.0, 45.0, -70.0);
 
@@ -120,6 +140,25 @@ mod tests {
             let is_inside = corner.cmpge(found_box[0]).all() && corner.cmple(found_box[1]).all();
             assert!(is_inside, "{corner} is outside {found_box:?}");
         }
+    }
+
+    /// Copies of a mesh count wherever they are, and other meshes in the place of one.
+    #[test]
+    fn only_a_copy_in_the_same_place_is_passed_over() {
+        let triangle = |x: f32| {
+            let positions = vec![Vec3::ZERO, Vec3::new(x, 0.0, 0.0), Vec3::new(0.0, x, 0.0)];
+            let mesh = Mesh { positions, triangles: vec![[0, 1, 2]], ..Mesh::default() };
+            Shape::Mesh(Arc::new(TracedMesh::new(mesh)))
+        };
+        let (small, large) = (triangle(1.0), triangle(2.0));
+        let at = |x: f64| Transform::new(DVec3::new(x, 0.0, 0.0), DVec3::ZERO, DVec3::ONE);
+        let instance = |shape: &Shape, x: f64| Instance::new(shape.clone(), at(x));
+        let instances = vec![instance(&small, 0.0), instance(&small, 0.0), instance(&small, 5.0)];
+        let extent = |instances| Geometry::new(instances, AcceleratorKind::default()).extent();
+        let copies = extent(instances.clone());
+        assert_near(copies, [DVec3::ZERO, DVec3::new(6.0, 1.0, 0.0)], "copies");
+        let with_large = [instances, vec![instance(&large, 5.0)]].concat();
+        assert_near(extent(with_large), [DVec3::ZERO, DVec3::new(7.0, 2.0, 0.0)], "another mesh");
     }
 
     #[test]
