@@ -90,17 +90,15 @@ impl RayBatch {
         extend(&mut self.source, &block.source, n);
     }
 
-    /// A block of `n` rays from `start` on.
+    /// Overwrites the first rays of a block with `n` rays from `start` on.
     #[inline]
-    pub(crate) fn block(&self, start: usize, n: usize) -> RayBlock {
-        let mut block = RayBlock::IDLE;
+    pub(crate) fn copy_to(&self, start: usize, n: usize, block: &mut RayBlock) {
         for axis in 0..3 {
             copy(&self.origin[axis], start, n, &mut block.origin[axis]);
             copy(&self.direction[axis], start, n, &mut block.direction[axis]);
         }
         copy(&self.t_max, start, n, &mut block.t_max);
         copy(&self.source, start, n, &mut block.source);
-        block
     }
 
     /// The ray at `index`.
