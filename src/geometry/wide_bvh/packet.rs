@@ -3,7 +3,8 @@
 //! Up to four groups of sixteen rays that go about the same way share a traversal: an interval of
 //! their origins and reciprocal directions is tested against eight boxes at once, the boxes that
 //! remain against the rays themselves, a group at a time, and only groups of which a ray touches a
-//! box go on with it. Each triangle is tested against sixteen rays. Rays that begin near each other
+//! box go on with it. A triangle is tested against sixteen rays, or, where few touch the box of a
+//! large mesh's block, four rays against its four triangles at once. Rays that begin near each other
 //! and part soon go together as far as several of them touch the same boxes; from there on they are
 //! left to [`stream`].
 //!
