@@ -130,9 +130,9 @@ fn folder_ui(
     }
     row(ui, "", "", |ui| {
         let choose = ui.button("Choose…").on_hover_text("opens the system's dialog");
-        let told = format!("{}-001.{} or -002, …", facts.title, settings.format.ending());
+        let told = format!("{}-NNN.{}", facts.title, settings.format.ending());
         ui.add(egui::Label::new(RichText::new(told).weak()).truncate())
-            .on_hover_text("the first free number");
+            .on_hover_text("NNN is the first free number");
         choose.clicked().then_some(ExportChoice::ChooseFolder)
     })
 }
