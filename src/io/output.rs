@@ -110,16 +110,35 @@ pub fn encode_exr(picture: &Picture) -> Result<Vec<u8>, image::ImageError> {
     Ok(bytes.into_inner())
 }
 
-/// The bytes of a Radiance file: linear, 8 bits a channel and a shared exponent.
+/// The bytes of a Radiance file: linear, 8 bits a channel and a shared exponent, to the nearest.
 ///
 /// # Errors
 /// When encoding fails.
 pub fn encode_hdr(picture: &Picture) -> Result<Vec<u8>, image::ImageError> {
     let mut bytes = Vec::new();
-    let pixels: Vec<image::Rgb<f32>> = picture.pixels.iter().map(|p| image::Rgb(*p)).collect();
+    let nearest = |pixel: &[f32; 3]| image::Rgb(nearest_rgbe(*pixel));
+    let pixels: Vec<image::Rgb<f32>> = picture.pixels.iter().map(nearest).collect();
     let (width, height) = (picture.width as usize, picture.height as usize);
     image::codecs::hdr::HdrEncoder::new(&mut bytes).encode(&pixels, width, height)?;
     Ok(bytes)
+}
+
+/// The nearest colour that a Radiance file can hold. The encoder takes the exponent from a logarithm
+/// and cuts off what eight bits do not hold; of these colours it cuts nothing off, whatever the
+/// logarithm's last bit, and none is so dark that its exponent wraps round to the largest.
+fn nearest_rgbe(pixel: [f32; 3]) -> [f32; 3] {
+    /// 255 x 2^119: the brightest that there is.
+    const BRIGHTEST: f32 = 1.694_765_7e38;
+    let [r, g, b] = pixel.map(|x| if x > 0.0 { x.min(BRIGHTEST) } else { 0.0 });
+    let largest = r.max(g).max(b);
+    if largest < f32::MIN_POSITIVE {
+        return [0.0; 3];
+    }
+    // One step of the largest channel, which takes 128 to 255 of them.
+    let exponent = (largest.to_bits() >> 23) as i32 - 127 - 7;
+    let step = f64::from_bits(((exponent + 1023) as u64) << 52);
+    let step = if f64::from(largest) < 255.5 * step { step } else { 2.0 * step };
+    [r, g, b].map(|x| ((f64::from(x) / step).round() * step) as f32)
 }
 
 /// Replaces a file by these bytes: temporary file beside it, synced, renamed. Until then the old
@@ -252,6 +271,27 @@ fn sync_folder(path: &Path) {
 mod tests {
     use super::*;
     use std::time::SystemTime;
+
+    /// Within half a step of the largest channel, from the darkest that a float can be to the brightest.
+    #[test]
+    fn a_radiance_file_holds_the_nearest_colors() {
+        let mut pixels = vec![[0.0; 3], [1.0; 3], [0.9999, 0.2, 0.3], [1023.9999, 1.0, -1.0]];
+        let mut largest = 1e-45_f32;
+        while largest < 1e38 {
+            pixels.push([largest, 0.3 * largest, 0.7 * largest]);
+            largest *= 1.37;
+        }
+        let picture = Picture { width: pixels.len() as u32, height: 1, pixels };
+        let bytes = encode_hdr(&picture).unwrap();
+        let decoded = image::load_from_memory(&bytes).unwrap().into_rgb32f();
+        for (exact, found) in picture.pixels.iter().zip(decoded.pixels()) {
+            let largest = exact.iter().copied().fold(255.0 * f32::MIN_POSITIVE, f32::max);
+            for (x, y) in exact.iter().zip(found.0) {
+                let error = (f64::from(x.max(0.0)) - f64::from(y)).abs();
+                assert!(error <= f64::from(largest) / 255.0, "{x} of {exact:?} is {y}");
+            }
+        }
+    }
 
     #[cfg(unix)]
     #[test]

@@ -14,7 +14,9 @@ use crate::io::scene_file::Section;
 use crate::io::{excerpt, image_file, mtl};
 use crate::loader::Told;
 use crate::scene::assets::{Assets, MeshAsset, MeshKey, SlotMaterial};
-use crate::scene::description::{ObjectKind, SceneDescription, TextureKind};
+use crate::scene::description::{
+    ColorOrTexture, MaterialDescription, ObjectKind, SceneDescription, TextureKind,
+};
 use crate::scene::image::Image;
 
 /// The files of one scene on their way in; each is read once.
@@ -85,7 +87,36 @@ impl<'a> Reading<'a> {
             })?;
             self.assets.images.insert(file.clone(), Arc::new(image));
         }
+        self.tell_missing_uvs(description);
         Ok(())
+    }
+
+    /// Meshes that a material of the scene shows a picture on, and that do not say where.
+    fn tell_missing_uvs(&mut self, description: &SceneDescription) {
+        let is_image = |name: &str| {
+            let mut textures = description.textures.iter();
+            textures.any(|texture| texture.kind == TextureKind::Image && texture.name == name)
+        };
+        let has_image = |material: &MaterialDescription| {
+            let bumps = material.bump.as_ref().is_some_and(|bump| is_image(&bump.texture));
+            bumps || matches!(&material.diffuse, ColorOrTexture::Texture(name) if is_image(name))
+        };
+        for object in &description.objects {
+            let named =
+                |material: &&MaterialDescription| object.material == Some(material.name.clone());
+            let material = description.materials.iter().find(named);
+            let Some(mesh) = MeshKey::of(object).and_then(|key| self.assets.meshes.get(&key))
+            else {
+                continue;
+            };
+            if mesh.traced.mesh.uvs.is_empty() && material.is_some_and(has_image) {
+                let file = object.file.as_deref().unwrap_or_default();
+                let told = no_uvs(&excerpt(file.as_bytes()));
+                if !self.report.contains(&told) {
+                    self.report.push(told);
+                }
+            }
+        }
     }
 
     fn check_cancelled(&self) -> Result<(), AssetFailure> {
@@ -194,10 +225,14 @@ impl<'a> Reading<'a> {
         }
         let has_map = slots.iter().flatten().any(|slot| slot.diffuse_map.is_some());
         if !has_uvs && has_map {
-            self.report.push(format!("{label}: has no texture coordinates; (0, 0) is used"));
+            self.report.push(no_uvs(&label));
         }
         slots
     }
+}
+
+fn no_uvs(label: &str) -> String {
+    format!("{label}: has no texture coordinates; (0, 0) is used")
 }
 
 fn decode(file: &str, bytes: &[u8]) -> Result<Image, String> {
