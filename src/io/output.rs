@@ -276,7 +276,7 @@ mod tests {
     #[test]
     fn a_radiance_file_holds_the_nearest_colors() {
         let mut pixels = vec![[0.0; 3], [1.0; 3], [0.9999, 0.2, 0.3], [1023.9999, 1.0, -1.0]];
-        let mut largest = 1e-45_f32;
+        let mut largest = f32::from_bits(2);
         while largest < 1e38 {
             pixels.push([largest, 0.3 * largest, 0.7 * largest]);
             largest *= 1.37;

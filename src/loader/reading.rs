@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::geometry::TracedMesh;
+use crate::geometry::mesh::ABSENT;
 use crate::io::files::FileError;
 use crate::io::folder::{FileRecord, Folder};
 use crate::io::obj::{self, MeshNotes, ObjError};
@@ -91,7 +92,7 @@ impl<'a> Reading<'a> {
         Ok(())
     }
 
-    /// Meshes that a material of the scene shows a picture on, and that do not say where.
+    /// Meshes that a material shows a picture on, and that do not say where.
     fn tell_missing_uvs(&mut self, description: &SceneDescription) {
         let is_image = |name: &str| {
             let mut textures = description.textures.iter();
@@ -102,19 +103,38 @@ impl<'a> Reading<'a> {
             bumps || matches!(&material.diffuse, ColorOrTexture::Texture(name) if is_image(name))
         };
         for object in &description.objects {
-            let named =
-                |material: &&MaterialDescription| object.material == Some(material.name.clone());
-            let material = description.materials.iter().find(named);
-            let Some(mesh) = MeshKey::of(object).and_then(|key| self.assets.meshes.get(&key))
+            let Some(asset) = MeshKey::of(object).and_then(|key| self.assets.meshes.get(&key))
             else {
                 continue;
             };
-            if mesh.traced.mesh.uvs.is_empty() && material.is_some_and(has_image) {
-                let file = object.file.as_deref().unwrap_or_default();
-                let told = no_uvs(&excerpt(file.as_bytes()));
-                if !self.report.contains(&told) {
-                    self.report.push(told);
-                }
+            let material = object.material.as_ref().map(|name| {
+                let mut materials = description.materials.iter();
+                materials.any(|material| material.name == *name && has_image(material))
+            });
+            let slot_has_map: Vec<bool> = (asset.slots.iter())
+                .map(|slot| slot.as_ref().is_some_and(|slot| slot.diffuse_map.is_some()))
+                .collect();
+            if !material.unwrap_or(slot_has_map.contains(&true)) {
+                continue;
+            }
+            let mesh = &asset.traced.mesh;
+            let is_shown = |triangle: &usize| {
+                let slot = mesh.slots.get(*triangle).map_or(0, |slot| *slot as usize);
+                material.unwrap_or_else(|| slot_has_map.get(slot) == Some(&true))
+            };
+            let is_bare =
+                |triangle: usize| mesh.uv_ids.get(triangle).is_none_or(|ids| ids.contains(&ABSENT));
+            let mut are_bare = (0..mesh.triangles.len()).filter(is_shown).map(is_bare);
+            let what =
+                match (are_bare.clone().all(|is_bare| is_bare), are_bare.any(|is_bare| is_bare)) {
+                    (true, true) => "has no texture coordinates; (0, 0) is used",
+                    (false, true) => "has faces without texture coordinates; (0, 0) is used there",
+                    (_, false) => continue,
+                };
+            let file = excerpt(object.file.as_deref().unwrap_or_default().as_bytes());
+            let told = format!("{file}: {what}");
+            if !self.report.contains(&told) {
+                self.report.push(told);
             }
         }
     }
@@ -168,7 +188,7 @@ impl<'a> Reading<'a> {
         let watch = Watch::new(stop, &told);
         let mut parsed = obj::parse(bytes, watch)?;
         let notes = parsed.take_notes();
-        let slots = self.slots_of(file, notes, !parsed.uvs.is_empty());
+        let slots = self.slots_of(file, notes);
         let mut keys = keys.into_iter().peekable();
         while let Some(key) = keys.next() {
             if watch.is_stopped() {
@@ -185,12 +205,7 @@ impl<'a> Reading<'a> {
     }
 
     /// The materials that a mesh's libraries have; whatever is wrong with those is reported only.
-    fn slots_of(
-        &mut self,
-        file: &str,
-        notes: MeshNotes,
-        has_uvs: bool,
-    ) -> Vec<Option<SlotMaterial>> {
+    fn slots_of(&mut self, file: &str, notes: MeshNotes) -> Vec<Option<SlotMaterial>> {
         let label = excerpt(file.as_bytes());
         let beside = Path::new(file).parent().unwrap_or(Path::new("")).to_owned();
         let named = |path: &Path| beside.join(path).to_string_lossy().into_owned();
@@ -223,16 +238,8 @@ impl<'a> Reading<'a> {
             });
             slots.push(Some(SlotMaterial { description: material.description, diffuse_map }));
         }
-        let has_map = slots.iter().flatten().any(|slot| slot.diffuse_map.is_some());
-        if !has_uvs && has_map {
-            self.report.push(no_uvs(&label));
-        }
         slots
     }
-}
-
-fn no_uvs(label: &str) -> String {
-    format!("{label}: has no texture coordinates; (0, 0) is used")
 }
 
 fn decode(file: &str, bytes: &[u8]) -> Result<Image, String> {
