@@ -186,6 +186,9 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
         return Err(WriteError::new(path, "this is the name of a folder"));
     }
     let place = behind_links(path);
+    if place.exists() && !place.is_file() {
+        return Err(WriteError::new(path, "this is the name of a pipe or a device"));
+    }
     let folder = folder_of(&place);
     if !folder.exists() {
         let reason = format!("there is no folder {}; make it first", printable_path(folder));
@@ -214,6 +217,10 @@ fn write_temporary(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile,
     let written = writer.write_all(bytes).and_then(|()| writer.flush());
     written.map_err(|error| WriteError::new(path, plain(&error)))?;
     let file = writer.into_inner().map_err(|error| WriteError::new(path, error.error().kind()))?;
+    // Who may read what was there may read what comes.
+    if let Ok(old) = std::fs::metadata(path) {
+        let _ = file.as_file().set_permissions(old.permissions());
+    }
     file.as_file().sync_all().map_err(|error| WriteError::new(path, error))?;
     Ok(file)
 }
@@ -247,10 +254,17 @@ fn plain(error: &io::Error) -> String {
     text.split_once(" at path ").map_or_else(|| text.clone(), |(reason, _)| reason.to_owned())
 }
 
-/// The file that a link stands for; the path itself where it is none, or leads nowhere.
+/// The file that a link stands for, also where that is not there yet; the path itself where it is no
+/// link, or leads round in a circle.
 fn behind_links(path: &Path) -> PathBuf {
-    let target = path.is_symlink().then(|| std::fs::canonicalize(path).ok()).flatten();
-    target.unwrap_or_else(|| path.to_owned())
+    /// As many as Linux follows.
+    const MOST: usize = 40;
+    let mut place = path.to_owned();
+    for _ in 0..MOST {
+        let Ok(target) = std::fs::read_link(&place) else { return place };
+        place = folder_of(&place).join(target);
+    }
+    path.to_owned()
 }
 
 /// The folder that a file is in, or is to be in.
@@ -306,6 +320,33 @@ mod tests {
         assert!(path("a.toml").is_symlink(), "the link is gone");
         assert_eq!(std::fs::read(path("elsewhere/a.toml")).unwrap(), b"new", "the file behind it");
         create_file(&path("a.toml"), b"newer").unwrap_err();
+        std::os::unix::fs::symlink("a.toml", path("b.toml")).unwrap();
+        std::fs::remove_file(path("elsewhere/a.toml")).unwrap();
+        replace_file(&path("b.toml"), b"anew").unwrap();
+        assert!(path("b.toml").is_symlink() && path("a.toml").is_symlink(), "a link is gone");
+        assert_eq!(std::fs::read(path("elsewhere/a.toml")).unwrap(), b"anew", "two links on");
+        std::os::unix::fs::symlink("c.toml", path("c.toml")).unwrap();
+        replace_file(&path("c.toml"), b"round").unwrap();
+        assert_eq!(std::fs::read(path("c.toml")).unwrap(), b"round", "a link to itself gives way");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn who_may_read_a_file_may_read_what_replaces_it_and_pipes_stay() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.toml");
+        replace_file(&path, b"old").unwrap();
+        for mode in [0o600, 0o664] {
+            std::fs::set_permissions(&path, std::fs::Permissions::from_mode(mode)).unwrap();
+            replace_file(&path, b"new").unwrap();
+            let found = std::fs::metadata(&path).unwrap().permissions().mode() & 0o777;
+            assert_eq!(found, mode, "{found:o}");
+        }
+        let pipe = folder.path().join("p.png");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let error = check_writable(&pipe).unwrap_err().to_string();
+        assert!(error.contains("a pipe or a device"), "{error}");
     }
 
     #[test]
