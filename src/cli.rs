@@ -1,6 +1,7 @@
 //! The command line: `render`, `info` and `verify`, without a window.
 
 use std::io::{Write, stderr, stdout};
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -50,25 +51,25 @@ pub struct RenderArguments {
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     /// Samples per pixel
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_048_576))]
+    #[arg(short, long, value_name = "N", allow_negative_numbers = true, value_parser = whole(1..=1_048_576))]
     samples: Option<u32>,
     /// Stop at the first whole pass after this many seconds
-    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = positive)]
     time: Option<f64>,
     /// Stop when the estimated noise falls below this
-    #[arg(long, value_name = "PERCENT", value_parser = positive)]
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, value_parser = positive)]
     noise: Option<f64>,
     /// Width in pixels
-    #[arg(long, value_name = "W", value_parser = clap::value_parser!(u32).range(1..=16_384))]
+    #[arg(long, value_name = "W", allow_negative_numbers = true, value_parser = whole(1..=16_384))]
     width: Option<u32>,
     /// Height in pixels
-    #[arg(long, value_name = "H", value_parser = clap::value_parser!(u32).range(1..=16_384))]
+    #[arg(long, value_name = "H", allow_negative_numbers = true, value_parser = whole(1..=16_384))]
     height: Option<u32>,
     /// Seed of all random numbers
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole(0..=u32::MAX))]
     seed: Option<u32>,
     /// Threads to render with; all if not given
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    #[arg(short, long, value_name = "N", allow_negative_numbers = true, value_parser = whole(1..=1024))]
     threads: Option<u32>,
     /// Set a parameter of the scene, as camera.aperture_radius=0.1; may be repeated
     #[arg(long = "set", value_name = "PATH=VALUE", value_parser = Override::parse)]
@@ -100,7 +101,7 @@ pub struct VerifyArguments {
     /// Snapshot to render again
     shot: PathBuf,
     /// Threads to render with; all if not given
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    #[arg(short, long, value_name = "N", allow_negative_numbers = true, value_parser = whole(1..=1024))]
     threads: Option<u32>,
     /// No progress and no warnings
     #[arg(long)]
@@ -192,6 +193,16 @@ fn warn(lines: &[String], is_quiet: bool) {
         for line in lines {
             tell("warning", line);
         }
+    }
+}
+
+fn whole(
+    range: RangeInclusive<u32>,
+) -> impl Fn(&str) -> Result<u32, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let number = text.parse().ok().filter(|number| range.contains(number));
+        let (low, high) = (range.start(), range.end());
+        number.ok_or_else(|| format!("give a whole number from {low} to {high}"))
     }
 }
 

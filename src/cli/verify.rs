@@ -20,19 +20,17 @@ use crate::tone_mapping::srgb_bytes;
 
 pub(super) fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     let path = &arguments.shot;
+    let shown = printable_path(path);
+    let other = || anyhow!("{shown}: is no snapshot; give a PNG saved by penumbra");
+    if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+        return Err(other().into());
+    }
     let loaded = open(path, &[])?;
-    let Some(record) = &loaded.snapshot else {
-        return Err(anyhow!(
-            "{}: is no snapshot; give a PNG saved by penumbra",
-            printable_path(path)
-        )
-        .into());
-    };
+    let record = loaded.snapshot.as_ref().ok_or_else(other)?;
     warn(&loaded.report, arguments.quiet);
     let render = &loaded.description.render;
     if (record.samples, record.seed) != (render.samples, render.seed) {
-        let path = printable_path(path);
-        return Err(anyhow!("{path}: its scene and its record differ: the file is damaged").into());
+        return Err(anyhow!("{shown}: its scene and its record differ: the file is damaged").into());
     }
     let version = env!("CARGO_PKG_VERSION");
     let versions = if record.version == version {
@@ -46,7 +44,7 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
             print(&format!("different: {error}{versions}"))?;
             return Err(Failure::Different);
         }
-        Err(error) => return Err(anyhow!("{}: {error}", printable_path(path)).into()),
+        Err(error) => return Err(anyhow!("{shown}: {error}").into()),
     };
     let pool = threads::pool_of("render", arguments.threads)?;
     let world = world_of(&loaded, AcceleratorKind::default(), &pool)?;

@@ -186,9 +186,10 @@ impl Instance {
     fn each_crossing(&self, rays: &RayBatch, mut call: impl FnMut(usize, f32, u32)) {
         let mut crossings = Crossings::NONE;
         let mut theirs = ObjectRays { origin: [[0.0; BLOCK]; 3], direction: [[0.0; BLOCK]; 3] };
+        let mut ours = RayBlock::IDLE;
         for start in (0..rays.len()).step_by(BLOCK) {
             let n = BLOCK.min(rays.len() - start);
-            let ours = rays.block(start, n);
+            rays.copy_to(start, n, &mut ours);
             widened(&self.transform, &ours, &mut theirs);
             self.shape.crossings_of_block(&theirs, &mut crossings);
             for i in 0..n {
@@ -205,9 +206,10 @@ impl Instance {
     /// Rays of the world as a mesh sees them, with one rounding.
     fn object_rays(&self, rays: &RayBatch) -> RayBatch {
         let mut batch = RayBatch::with_capacity(rays.len());
+        let mut block = RayBlock::IDLE;
         for start in (0..rays.len()).step_by(BLOCK) {
             let n = BLOCK.min(rays.len() - start);
-            let mut block = rays.block(start, n);
+            rays.copy_to(start, n, &mut block);
             moved(&self.transform, &mut block);
             batch.append(&block, n);
         }

@@ -185,7 +185,11 @@ impl Range<'_> {
     }
 
     fn tell(&mut self, what: String) {
-        self.warnings.push(format!("material `{}`: {what}", excerpt(self.name.as_bytes())));
+        let line = format!("material `{}`: {what}", excerpt(self.name.as_bytes()));
+        // Channels are often alike.
+        if self.warnings.last() != Some(&line) {
+            self.warnings.push(line);
+        }
     }
 }
 

@@ -110,16 +110,35 @@ pub fn encode_exr(picture: &Picture) -> Result<Vec<u8>, image::ImageError> {
     Ok(bytes.into_inner())
 }
 
-/// The bytes of a Radiance file: linear, 8 bits a channel and a shared exponent.
+/// The bytes of a Radiance file: linear, 8 bits a channel and a shared exponent, to the nearest.
 ///
 /// # Errors
 /// When encoding fails.
 pub fn encode_hdr(picture: &Picture) -> Result<Vec<u8>, image::ImageError> {
     let mut bytes = Vec::new();
-    let pixels: Vec<image::Rgb<f32>> = picture.pixels.iter().map(|p| image::Rgb(*p)).collect();
+    let nearest = |pixel: &[f32; 3]| image::Rgb(nearest_rgbe(*pixel));
+    let pixels: Vec<image::Rgb<f32>> = picture.pixels.iter().map(nearest).collect();
     let (width, height) = (picture.width as usize, picture.height as usize);
     image::codecs::hdr::HdrEncoder::new(&mut bytes).encode(&pixels, width, height)?;
     Ok(bytes)
+}
+
+/// The nearest colour that a Radiance file can hold. The encoder takes the exponent from a logarithm
+/// and cuts off what eight bits do not hold; of these colours it cuts nothing off, whatever the
+/// logarithm's last bit, and none is so dark that its exponent wraps round to the largest.
+fn nearest_rgbe(pixel: [f32; 3]) -> [f32; 3] {
+    /// 255 x 2^119: the brightest that there is.
+    const BRIGHTEST: f32 = 1.694_765_7e38;
+    let [r, g, b] = pixel.map(|x| if x > 0.0 { x.min(BRIGHTEST) } else { 0.0 });
+    let largest = r.max(g).max(b);
+    if largest < f32::MIN_POSITIVE {
+        return [0.0; 3];
+    }
+    // One step of the largest channel, which takes 128 to 255 of them.
+    let exponent = (largest.to_bits() >> 23) as i32 - 127 - 7;
+    let step = f64::from_bits(((exponent + 1023) as u64) << 52);
+    let step = if f64::from(largest) < 255.5 * step { step } else { 2.0 * step };
+    [r, g, b].map(|x| ((f64::from(x) / step).round() * step) as f32)
 }
 
 /// Replaces a file by these bytes: temporary file beside it, synced, renamed. Until then the old
@@ -167,6 +186,9 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
         return Err(WriteError::new(path, "this is the name of a folder"));
     }
     let place = behind_links(path);
+    if place.exists() && !place.is_file() {
+        return Err(WriteError::new(path, "this is the name of a pipe or a device"));
+    }
     let folder = folder_of(&place);
     if !folder.exists() {
         let reason = format!("there is no folder {}; make it first", printable_path(folder));
@@ -195,6 +217,10 @@ fn write_temporary(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile,
     let written = writer.write_all(bytes).and_then(|()| writer.flush());
     written.map_err(|error| WriteError::new(path, plain(&error)))?;
     let file = writer.into_inner().map_err(|error| WriteError::new(path, error.error().kind()))?;
+    // Who may read what was there may read what comes.
+    if let Ok(old) = std::fs::metadata(path) {
+        let _ = file.as_file().set_permissions(old.permissions());
+    }
     file.as_file().sync_all().map_err(|error| WriteError::new(path, error))?;
     Ok(file)
 }
@@ -228,10 +254,17 @@ fn plain(error: &io::Error) -> String {
     text.split_once(" at path ").map_or_else(|| text.clone(), |(reason, _)| reason.to_owned())
 }
 
-/// The file that a link stands for; the path itself where it is none, or leads nowhere.
+/// The file that a link stands for, also where that is not there yet; the path itself where it is no
+/// link, or leads round in a circle.
 fn behind_links(path: &Path) -> PathBuf {
-    let target = path.is_symlink().then(|| std::fs::canonicalize(path).ok()).flatten();
-    target.unwrap_or_else(|| path.to_owned())
+    /// As many as Linux follows.
+    const MOST: usize = 40;
+    let mut place = path.to_owned();
+    for _ in 0..MOST {
+        let Ok(target) = std::fs::read_link(&place) else { return place };
+        place = folder_of(&place).join(target);
+    }
+    path.to_owned()
 }
 
 /// The folder that a file is in, or is to be in.
@@ -253,6 +286,27 @@ mod tests {
     use super::*;
     use std::time::SystemTime;
 
+    /// Within half a step of the largest channel, from the darkest that a float can be to the brightest.
+    #[test]
+    fn a_radiance_file_holds_the_nearest_colors() {
+        let mut pixels = vec![[0.0; 3], [1.0; 3], [0.9999, 0.2, 0.3], [1023.9999, 1.0, -1.0]];
+        let mut largest = f32::from_bits(2);
+        while largest < 1e38 {
+            pixels.push([largest, 0.3 * largest, 0.7 * largest]);
+            largest *= 1.37;
+        }
+        let picture = Picture { width: pixels.len() as u32, height: 1, pixels };
+        let bytes = encode_hdr(&picture).unwrap();
+        let decoded = image::load_from_memory(&bytes).unwrap().into_rgb32f();
+        for (exact, found) in picture.pixels.iter().zip(decoded.pixels()) {
+            let largest = exact.iter().copied().fold(255.0 * f32::MIN_POSITIVE, f32::max);
+            for (x, y) in exact.iter().zip(found.0) {
+                let error = (f64::from(x.max(0.0)) - f64::from(y)).abs();
+                assert!(error <= f64::from(largest) / 255.0, "{x} of {exact:?} is {y}");
+            }
+        }
+    }
+
     #[cfg(unix)]
     #[test]
     fn a_link_stays_and_the_file_behind_it_is_replaced() {
@@ -266,6 +320,33 @@ mod tests {
         assert!(path("a.toml").is_symlink(), "the link is gone");
         assert_eq!(std::fs::read(path("elsewhere/a.toml")).unwrap(), b"new", "the file behind it");
         create_file(&path("a.toml"), b"newer").unwrap_err();
+        std::os::unix::fs::symlink("a.toml", path("b.toml")).unwrap();
+        std::fs::remove_file(path("elsewhere/a.toml")).unwrap();
+        replace_file(&path("b.toml"), b"anew").unwrap();
+        assert!(path("b.toml").is_symlink() && path("a.toml").is_symlink(), "a link is gone");
+        assert_eq!(std::fs::read(path("elsewhere/a.toml")).unwrap(), b"anew", "two links on");
+        std::os::unix::fs::symlink("c.toml", path("c.toml")).unwrap();
+        replace_file(&path("c.toml"), b"round").unwrap();
+        assert_eq!(std::fs::read(path("c.toml")).unwrap(), b"round", "a link to itself gives way");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn who_may_read_a_file_may_read_what_replaces_it_and_pipes_stay() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.toml");
+        replace_file(&path, b"old").unwrap();
+        for mode in [0o600, 0o664] {
+            std::fs::set_permissions(&path, std::fs::Permissions::from_mode(mode)).unwrap();
+            replace_file(&path, b"new").unwrap();
+            let found = std::fs::metadata(&path).unwrap().permissions().mode() & 0o777;
+            assert_eq!(found, mode, "{found:o}");
+        }
+        let pipe = folder.path().join("p.png");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let error = check_writable(&pipe).unwrap_err().to_string();
+        assert!(error.contains("a pipe or a device"), "{error}");
     }
 
     #[test]

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::geometry::TracedMesh;
+use crate::geometry::mesh::ABSENT;
 use crate::io::files::FileError;
 use crate::io::folder::{FileRecord, Folder};
 use crate::io::obj::{self, MeshNotes, ObjError};
@@ -14,7 +15,9 @@ use crate::io::scene_file::Section;
 use crate::io::{excerpt, image_file, mtl};
 use crate::loader::Told;
 use crate::scene::assets::{Assets, MeshAsset, MeshKey, SlotMaterial};
-use crate::scene::description::{ObjectKind, SceneDescription, TextureKind};
+use crate::scene::description::{
+    ColorOrTexture, MaterialDescription, ObjectKind, SceneDescription, TextureKind,
+};
 use crate::scene::image::Image;
 
 /// The files of one scene on their way in; each is read once.
@@ -91,7 +94,55 @@ impl<'a> Reading<'a> {
             })?;
             self.assets.images.insert(file.clone(), Arc::new(image));
         }
+        self.tell_missing_uvs(description);
         Ok(())
+    }
+
+    /// Meshes that a material shows a picture on, and that do not say where.
+    fn tell_missing_uvs(&mut self, description: &SceneDescription) {
+        let is_image = |name: &str| {
+            let mut textures = description.textures.iter();
+            textures.any(|texture| texture.kind == TextureKind::Image && texture.name == name)
+        };
+        let has_image = |material: &MaterialDescription| {
+            let bumps = material.bump.as_ref().is_some_and(|bump| is_image(&bump.texture));
+            bumps || matches!(&material.diffuse, ColorOrTexture::Texture(name) if is_image(name))
+        };
+        for object in &description.objects {
+            let Some(asset) = MeshKey::of(object).and_then(|key| self.assets.meshes.get(&key))
+            else {
+                continue;
+            };
+            let material = object.material.as_ref().map(|name| {
+                let mut materials = description.materials.iter();
+                materials.any(|material| material.name == *name && has_image(material))
+            });
+            let slot_has_map: Vec<bool> = (asset.slots.iter())
+                .map(|slot| slot.as_ref().is_some_and(|slot| slot.diffuse_map.is_some()))
+                .collect();
+            if !material.unwrap_or(slot_has_map.contains(&true)) {
+                continue;
+            }
+            let mesh = &asset.traced.mesh;
+            let is_shown = |triangle: &usize| {
+                let slot = mesh.slots.get(*triangle).map_or(0, |slot| *slot as usize);
+                material.unwrap_or_else(|| slot_has_map.get(slot) == Some(&true))
+            };
+            let is_bare =
+                |triangle: usize| mesh.uv_ids.get(triangle).is_none_or(|ids| ids.contains(&ABSENT));
+            let mut are_bare = (0..mesh.triangles.len()).filter(is_shown).map(is_bare);
+            let what =
+                match (are_bare.clone().all(|is_bare| is_bare), are_bare.any(|is_bare| is_bare)) {
+                    (true, true) => "has no texture coordinates; (0, 0) is used",
+                    (false, true) => "has faces without texture coordinates; (0, 0) is used there",
+                    (_, false) => continue,
+                };
+            let file = excerpt(object.file.as_deref().unwrap_or_default().as_bytes());
+            let told = format!("{file}: {what}");
+            if !self.report.contains(&told) {
+                self.report.push(told);
+            }
+        }
     }
 
     fn check_cancelled(&self) -> Result<(), AssetFailure> {
@@ -144,7 +195,7 @@ impl<'a> Reading<'a> {
         let mut parsed = obj::parse(bytes, watch)?;
         self.n_mesh_bytes += bytes.len();
         let notes = parsed.take_notes();
-        let slots = self.slots_of(file, notes, !parsed.uvs.is_empty());
+        let slots = self.slots_of(file, notes);
         let mut keys = keys.into_iter().peekable();
         while let Some(key) = keys.next() {
             self.n_triangles += parsed.triangles.len();
@@ -163,12 +214,7 @@ impl<'a> Reading<'a> {
     }
 
     /// The materials that a mesh's libraries have; whatever is wrong with those is reported only.
-    fn slots_of(
-        &mut self,
-        file: &str,
-        notes: MeshNotes,
-        has_uvs: bool,
-    ) -> Vec<Option<SlotMaterial>> {
+    fn slots_of(&mut self, file: &str, notes: MeshNotes) -> Vec<Option<SlotMaterial>> {
         let label = excerpt(file.as_bytes());
         let beside = Path::new(file).parent().unwrap_or(Path::new("")).to_owned();
         let named = |path: &Path| beside.join(path).to_string_lossy().into_owned();
@@ -200,10 +246,6 @@ impl<'a> Reading<'a> {
                 maps.get(&map).cloned().flatten()
             });
             slots.push(Some(SlotMaterial { description: material.description, diffuse_map }));
-        }
-        let has_map = slots.iter().flatten().any(|slot| slot.diffuse_map.is_some());
-        if !has_uvs && has_map {
-            self.report.push(format!("{label}: has no texture coordinates; (0, 0) is used"));
         }
         slots
     }

@@ -83,25 +83,22 @@ impl RayBatch {
     #[inline]
     pub(crate) fn append(&mut self, block: &RayBlock, n: usize) {
         for axis in 0..3 {
-            self.origin[axis].extend_from_slice(&block.origin[axis][..n]);
-            self.direction[axis].extend_from_slice(&block.direction[axis][..n]);
+            extend(&mut self.origin[axis], &block.origin[axis], n);
+            extend(&mut self.direction[axis], &block.direction[axis], n);
         }
-        self.t_max.extend_from_slice(&block.t_max[..n]);
-        self.source.extend_from_slice(&block.source[..n]);
+        extend(&mut self.t_max, &block.t_max, n);
+        extend(&mut self.source, &block.source, n);
     }
 
-    /// A block of `n` rays from `start` on.
+    /// Overwrites the first rays of a block with `n` rays from `start` on.
     #[inline]
-    pub(crate) fn block(&self, start: usize, n: usize) -> RayBlock {
-        let mut block = RayBlock::IDLE;
-        let range = start..start + n;
+    pub(crate) fn copy_to(&self, start: usize, n: usize, block: &mut RayBlock) {
         for axis in 0..3 {
-            block.origin[axis][..n].copy_from_slice(&self.origin[axis][range.clone()]);
-            block.direction[axis][..n].copy_from_slice(&self.direction[axis][range.clone()]);
+            copy(&self.origin[axis], start, n, &mut block.origin[axis]);
+            copy(&self.direction[axis], start, n, &mut block.direction[axis]);
         }
-        block.t_max[..n].copy_from_slice(&self.t_max[range.clone()]);
-        block.source[..n].copy_from_slice(&self.source[range]);
-        block
+        copy(&self.t_max, start, n, &mut block.t_max);
+        copy(&self.source, start, n, &mut block.source);
     }
 
     /// The ray at `index`.
@@ -154,6 +151,23 @@ impl RayBatch {
 fn pick<T: Copy>(column: &[T], places: &[u32], to: &mut Vec<T>) {
     to.clear();
     to.extend(places.iter().map(|place| column[*place as usize]));
+}
+
+/// Appends the first `n`. Whole lanes are copied without a call.
+#[inline(always)]
+fn extend<T: Copy>(column: &mut Vec<T>, lane: &Lane<T>, n: usize) {
+    let len = column.len();
+    column.extend_from_slice(lane);
+    column.truncate(len + n);
+}
+
+/// Copies `n` from `start` on.
+#[inline(always)]
+fn copy<T: Copy>(column: &[T], start: usize, n: usize, lane: &mut Lane<T>) {
+    match column[start..].first_chunk() {
+        Some(whole) if n == BLOCK => *lane = *whole,
+        _ => lane[..n].copy_from_slice(&column[start..start + n]),
+    }
 }
 
 /// A block of rays.

@@ -6,7 +6,7 @@
 //! Sources: S. Moshier, "Cephes Mathematical Library", 1989 (f32); Sun Microsystems, "Freely
 //! Distributable LIBM", 1993 (f64): reductions and coefficients.
 
-use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, PI};
 
 /// Sine and cosine in f32 for |x| <= π/4, within 1e-7.
 #[inline(always)]
@@ -78,30 +78,40 @@ pub fn ln_of_share(x: f32) -> f32 {
     m + fraction + 0.693_359_4 * e
 }
 
-/// The angle in 0..=π whose cosine is x, for |x| <= 1, within 1e-15.
+/// The angle in -π..=π of the point (x, y), within 1e-15; π where both are 0.
 #[inline(always)]
-pub fn acos(x: f64) -> f64 {
-    let a = x.abs();
-    let is_small = a <= 0.5;
-    let z = if is_small { a * a } else { 0.5 * (1.0 - a) };
-    let s = if is_small { a } else { z.sqrt() };
-    let mut p = 3.479_331_075_960_212e-5;
+pub fn atan2(y: f64, x: f64) -> f64 {
+    let (a, b) = (x.abs(), y.abs());
+    let is_steep = a < b;
+    let (short, long) = if is_steep { (a, b) } else { (b, a) };
+    // Beyond π/8, from the diagonal.
+    const TAN_PI_8: f64 = 0.414_213_562_373_095_03;
+    let is_turned = short > TAN_PI_8 * long;
+    let (opposite, adjacent) = if is_turned { (short - long, short + long) } else { (short, long) };
+    let t = opposite / adjacent;
+    let z = t * t;
+    let mut p = 1.628_582_011_536_578_2e-2;
     for term in [
-        7.915_349_942_898_145e-4,
-        -4.005_553_450_067_941e-2,
-        2.012_125_321_348_629_3e-1,
-        -3.255_658_186_224_009e-1,
-        1.666_666_666_666_666_6e-1,
+        -3.653_157_274_421_691_6e-2,
+        4.976_877_994_615_932e-2,
+        -5.833_570_133_790_573_5e-2,
+        6.661_073_137_387_531e-2,
+        -7.691_876_205_044_83e-2,
+        9.090_887_133_436_507e-2,
+        -1.111_111_040_546_235_6e-1,
+        1.428_571_427_250_346_6e-1,
+        -1.999_999_999_987_648_3e-1,
+        3.333_333_333_333_293e-1,
     ] {
         p = p * z + term;
     }
-    let mut q = 7.703_815_055_590_194e-2;
-    for term in [-6.882_839_716_054_533e-1, 2.020_945_760_233_505_7, -2.403_394_911_734_414] {
-        q = q * z + term;
-    }
-    let asin = s + s * (p * z / (q * z + 1.0));
-    let of_abs = if is_small { FRAC_PI_2 - asin } else { 2.0 * asin };
-    if x < 0.0 { PI - of_abs } else { of_abs }
+    let angle = t - t * z * p;
+    let angle = if is_turned { angle + FRAC_PI_4 } else { angle };
+    let angle = if is_steep { FRAC_PI_2 - angle } else { angle };
+    let angle = if x > 0.0 { angle } else { PI - angle };
+    // Not a number where both are 0.
+    let angle = if long > 0.0 { angle } else { PI };
+    angle.copysign(y)
 }
 
 /// Sine and cosine in f64 for |x| <= 1e5, within 1e-15.
@@ -204,8 +214,10 @@ mod tests {
     #[test]
     fn functions_in_double_precision_are_exact_to_their_bounds() {
         let arc = worst(|s| {
-            let x = 2.0 * s - 1.0;
-            (acos(x) - portable::acos_f64(x)).abs()
+            // Of every length.
+            let (angle, length) = (2.0 * PI * s - PI, 10.0_f64.powf(4.0 * (s * 1e4).fract() - 2.0));
+            let (x, y) = (length * portable::cos_f64(angle), length * portable::sin_f64(angle));
+            (atan2(y, x) - portable::atan2_f64(y, x)).abs()
         });
         assert!(arc < 1e-15, "{arc}");
         let turns = worst(|s| {
@@ -244,7 +256,8 @@ mod tests {
         assert_eq!(ln_of_share(1.0), 0.0);
         assert_eq!(sin_cos_turns(0.25), (1.0, sin_cos_turns(0.25).1));
         assert_eq!(sin_cos_turns(0.5).1, -1.0);
-        assert_eq!((acos(1.0), acos(0.0)), (0.0, FRAC_PI_2));
-        assert_eq!(acos(-1.0), PI);
+        assert_eq!((atan2(0.0, 2.0), atan2(-0.0, -2.0)), (0.0, -PI));
+        assert_eq!((atan2(3.0, 0.0), atan2(-1e-300, 0.0)), (FRAC_PI_2, -FRAC_PI_2));
+        assert_eq!((atan2(0.0, 0.0), atan2(1e300, 1e300)), (PI, FRAC_PI_4));
     }
 }

@@ -1,9 +1,8 @@
 //! A rectangle as it is seen from a point, sampled uniformly by solid angle.
 //!
 //! Source: C. Ureña, M. Fajardo and A. King, "An Area-Preserving Parametrization for Spherical
-//! Rectangles", EGSR 2013. In f64: the solid angle is a small difference of large angles.
-
-use std::f64::consts::TAU;
+//! Rectangles", EGSR 2013. In f64: the solid angle is a small difference of large angles. Angles are
+//! added as products of complex numbers of any length, which spares most roots and arc functions.
 
 use glam::DVec3;
 
@@ -12,17 +11,41 @@ use crate::math::elementary;
 /// The directions from a point to a rectangle.
 #[derive(Clone, Copy, Debug)]
 pub struct SphericalRectangle {
+    /// The unit of the lengths below.
+    unit: f64,
     /// Corners as seen from the point, in the rectangle's axes: lower x and y, upper x and y.
     x: [f64; 2],
     y: [f64; 2],
     /// Distance of its plane, above 0.
     z: f64,
-    /// z components of the normals of the planes through the point and the sides at y[0], y[1].
-    b: [f64; 2],
-    /// Angle at which the sampled sum of angles starts.
-    k: f64,
+    /// Cosine and sine, times any length, of the angle at which the sampled sum of angles starts.
+    start: Turn,
     /// In steradians, above 0.
     pub solid_angle: f64,
+}
+
+/// An angle as a complex number of any length.
+#[derive(Clone, Copy, Debug)]
+struct Turn {
+    cos: f64,
+    sin: f64,
+}
+
+impl Turn {
+    /// The sum of both angles.
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        Self {
+            cos: self.cos * other.cos - self.sin * other.sin,
+            sin: self.cos * other.sin + self.sin * other.cos,
+        }
+    }
+
+    /// How far it is beyond half a turn, in -π..=π.
+    #[inline(always)]
+    fn beyond_half(self) -> f64 {
+        elementary::atan2(-self.sin, -self.cos)
+    }
 }
 
 impl SphericalRectangle {
@@ -36,14 +59,22 @@ impl SphericalRectangle {
     /// The same without a check.
     #[inline(always)]
     pub(crate) fn seen(half: [f64; 2], from: DVec3) -> Self {
+        let unit = half[0] + half[1];
+        let scale = 1.0 / unit;
+        let (half, from) = (half.map(|length| length * scale), from * scale);
         let z = from.z.abs();
         let (x, y) = ([-half[0] - from.x, half[0] - from.x], [-half[1] - from.y, half[1] - from.y]);
-        let slope = |side: f64| side / (side * side + z * z).sqrt();
-        let n = [-slope(y[0]), slope(x[1]), slope(y[1]), -slope(x[0])];
-        let corner = |i: usize, j: usize| elementary::acos((-n[i] * n[j]).clamp(-1.0, 1.0));
-        let k = TAU - corner(2, 3) - corner(3, 0);
-        let solid_angle = corner(0, 1) + corner(1, 2) - k;
-        Self { x, y, z, b: [n[0], n[2]], k, solid_angle }
+        // Between the planes through the point and two sides.
+        let corner = |cos: f64, x: f64, y: f64| {
+            let distance = (x * x + y * y + z * z).sqrt();
+            Turn { cos, sin: z * distance }
+        };
+        let right = corner(x[1] * y[0], x[1], y[0]).plus(corner(-x[1] * y[1], x[1], y[1]));
+        let left = corner(x[0] * y[1], x[0], y[1]).plus(corner(-x[0] * y[0], x[0], y[0]));
+        let solid_angle = right.beyond_half() + left.beyond_half();
+        // The whole turn without the left corners.
+        let start = Turn { cos: left.cos, sin: -left.sin };
+        Self { unit, x, y, z, start, solid_angle }
     }
 
     /// Whether it can be told from nothing.
@@ -57,18 +88,23 @@ impl SphericalRectangle {
     /// from; z is the distance of the plane.
     #[inline(always)]
     pub fn sample(&self, [u, v]: [f64; 2]) -> DVec3 {
-        let angle = u * self.solid_angle + self.k;
-        let (sin, cos) = elementary::sin_cos(angle);
-        let f = (cos * self.b[0] - self.b[1]) / sin;
-        let c = (1.0_f64.copysign(f) / (f * f + self.b[0] * self.b[0]).sqrt()).clamp(-1.0, 1.0);
-        let x = c * self.z / (1.0 - c * c).max(1e-24).sqrt();
-        let x = if x.is_finite() { x.max(self.x[0]).min(self.x[1]) } else { self.x[0] };
-        let across2 = x * x + self.z * self.z;
-        let height = |y: f64| y / (across2 + y * y).sqrt();
-        let (low, high) = (height(self.y[0]), height(self.y[1]));
+        let Self { unit, x: [x0, x1], y: [y0, y1], z, .. } = *self;
+        let (sin, cos) = elementary::sin_cos(u * self.solid_angle);
+        let angle = self.start.plus(Turn { cos, sin });
+        // The cosine over the sine of the plane through x, both times the same length.
+        let z2 = z * z;
+        let low2 = y0 * y0 + z2;
+        let p = -angle.cos * y0 - y1 * (x0 * x0 + z2) * low2;
+        let across = (p - z * angle.sin) * (p + z * angle.sin);
+        let x = z * angle.sin * (low2 / across.max(1e-24 * p * p)).sqrt() * 1.0_f64.copysign(p);
+        let x = if x.is_finite() { x.max(x0).min(x1) } else { x0 };
+        let across2 = x * x + z2;
+        let (to_low, to_high) = ((across2 + y0 * y0).sqrt(), (across2 + y1 * y1).sqrt());
+        let scale = 1.0 / (to_low * to_high);
+        let (low, high) = (y0 * to_high * scale, y1 * to_low * scale);
         let h = low + v * (high - low);
         let y = h * (across2 / (1.0 - h * h).max(1e-24)).sqrt();
-        DVec3::new(x, y.max(self.y[0]).min(self.y[1]), self.z)
+        DVec3::new(x, y.max(y0).min(y1), z) * unit
     }
 }
 

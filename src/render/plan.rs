@@ -107,13 +107,26 @@ mod tests {
     }
 
     #[test]
+    fn passes_grow_to_sixteen_samples_and_never_cross_a_power_of_two() {
+        let sizes = [0, 1, 2, 4, 8, 16, 32, 4096].map(|n| pass_samples(n, u32::MAX));
+        assert_eq!(sizes, [1, 1, 2, 4, 8, 16, 16, 16], "other passes");
+        // Also where a goal in between was reached before.
+        for n in 1..300 {
+            let end = n + pass_samples(n, 1000);
+            let next_power = (n + 1).next_power_of_two();
+            assert!(n < end && end <= next_power, "a pass from {n} to {end}");
+        }
+    }
+
+    #[test]
     fn tiles_go_together_for_few_samples_and_few_threads() {
         assert_eq!(tiles_together(1000, 1, 2), 4, "1024 paths");
         assert_eq!(tiles_together(1000, 2, 2), 2, "the same");
         assert_eq!(tiles_together(1000, 16, 2), 1, "enough paths each");
         assert_eq!(tiles_together(20, 1, 2), 2, "four shares a thread");
         assert_eq!(tiles_together(3, 1, 64), 1, "fewer tiles than threads");
-        assert_eq!(tiles_together(1000, u32::MAX / 256, 2), 1);
+        assert_eq!(tiles_together(1000, 0, 2), 4, "a pass without samples");
+        assert_eq!(tiles_together(20, 1, 0), 4, "no thread yet: as for one");
     }
 
     #[test]
@@ -127,7 +140,8 @@ mod tests {
         assert_eq!(preview_scale(0, 0.0, 0.02), 1, "of nothing");
     }
 
-    /// Each takes at most nine times as long as the one before, but for the picture itself.
+    /// Each takes at most nine times as long as the one before, and the picture itself comes after one
+    /// by four at most.
     #[test]
     fn finer_previews_lead_to_the_picture() {
         for coarsest in 1..=64 {
@@ -135,7 +149,9 @@ mod tests {
             while scale > 1 {
                 let next = finer_scale(scale);
                 assert!(next < scale, "{next} after {scale}");
-                assert!(next == 1 || 9 * next * next >= scale * scale, "{next} after {scale}");
+                assert!(scale <= 4 || 9 * next * next >= scale * scale, "{next} after {scale}");
+                assert!(next == 1 || 4 * next * next <= scale * scale, "{next} after {scale}");
+                assert!(next == 1 || 4 < scale, "{next} after {scale}, not the picture");
                 scale = next;
             }
         }

@@ -22,8 +22,8 @@ pub struct World {
     pub(super) has_glass: bool,
     /// The material slots of all objects: object and slot.
     pub(super) slots: Vec<(u32, u32)>,
-    /// For each object, where its slots start.
-    pub(super) first_slot: Vec<u32>,
+    /// For each object, where its slots start, and at last their number.
+    first_slot: Vec<u32>,
     /// What lights others in "path" beside `[[lights]]`; empty in "direct".
     pub(super) emission: Emission,
 }
@@ -61,6 +61,7 @@ impl World {
             let n_slots = object.materials.len() as u32;
             slots.extend((0..n_slots).map(|slot| (index as u32, slot)));
         }
+        first_slot.push(slots.len() as u32);
         let emission = match job.settings.integrator {
             IntegratorKind::Direct => Emission::default(),
             IntegratorKind::Path => Emission::new(&job.scene),
@@ -90,6 +91,13 @@ impl World {
             | Shape::Cone { .. }
             | Shape::Cylinder { .. } => 0,
         }
+    }
+
+    /// The number of the material slot at a hit among those of all objects.
+    pub(super) fn slot_number(&self, hit: Hit) -> u32 {
+        let object = hit.id.object as usize;
+        let (first, end) = (self.first_slot[object], self.first_slot[object + 1]);
+        if end - first == 1 { first } else { first + self.slot_at(hit) }
     }
 
     /// What the pinhole ray at (x, y) in pixels meets; `None` for suns and the background.

@@ -5,8 +5,7 @@ use super::compare::{CompareChoice, Pinned};
 use super::dialogs::Purpose;
 use super::export_dialog::{ExportChoice, ExportFacts, export_ui};
 use super::help::{HelpChoice, help_ui};
-use super::keys::Action;
-use super::keys_file;
+use super::keys::{self, Action};
 use super::start::StartChoice;
 use super::toolbar::ToolbarChoice;
 use crate::io::gallery::GALLERY;
@@ -166,7 +165,7 @@ impl App {
             Some(HelpChoice::Close) => self.interface.help_shown = false,
             Some(HelpChoice::MakeKeysFile) => {
                 let Some(path) = self.keys_file.clone() else { return };
-                match create_file(&path, keys_file::template().as_bytes()) {
+                match create_file(&path, keys::file::template().as_bytes()) {
                     Ok(()) => self.toasts.say(format!(
                         "{} is there; edit it and start Penumbra again",
                         path.display()

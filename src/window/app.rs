@@ -6,9 +6,9 @@ use super::dialogs::PathDialogs;
 use super::export::Exporter;
 use super::files::FileWork;
 use super::gesture::Gesture;
-use super::keys::Keys;
-use super::keys_file;
+use super::keys::{self, Keys};
 use super::lens_overlay::LensOverlay;
+use super::pacing::Pacing;
 use super::picture::PictureDisplay;
 use super::probe::Probe;
 use super::recent::RecentPictures;
@@ -42,6 +42,7 @@ pub(super) struct App {
     /// The click whose answer from the renderer is awaited.
     pub(super) awaited_click: Option<Click>,
     pub(super) gesture: Gesture,
+    pacing: Pacing,
     /// Whether the next full picture is written to a file.
     pub(super) snapshot_wanted: bool,
     /// Whether a picture of a size of its own is to be rendered.
@@ -110,8 +111,8 @@ impl App {
         let mut files = FileWork::new(Loader::new(wake())?);
         files.open(first);
         let empty = empty_scene();
-        let keys_file = own_folder.as_ref().map(|folder| folder.join(keys_file::NAME));
-        let (keys, complaints) = keys_file.as_deref().map(keys_file::load).unwrap_or_default();
+        let keys_file = own_folder.as_ref().map(|folder| folder.join(keys::file::NAME));
+        let (keys, complaints) = keys_file.as_deref().map(keys::file::load).unwrap_or_default();
         let mut toasts = Toasts::default();
         if let (false, Some(path)) = (complaints.is_empty(), &keys_file) {
             toasts.fail(format!("{}\n{}", path.display(), complaints.join("\n")));
@@ -146,6 +147,7 @@ impl App {
             watcher: Watcher::new(wake())?,
             recovery: Recovery::new(own_folder),
             gesture: Gesture::default(),
+            pacing: Pacing::default(),
             picture: PictureDisplay::new(wake())?,
             swatches: Swatches::new(wake())?,
             viewport: ViewportFacts {
@@ -182,6 +184,14 @@ impl App {
         self.settings.keep(&Remembered::of(&self.interface));
     }
 
+    /// Deals the input out to frames: with this one, and with those that follow at once.
+    pub(super) fn pace(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
+        self.pacing.pace(&mut input.events);
+        if self.pacing.is_waiting() {
+            ctx.request_repaint();
+        }
+    }
+
     /// One frame of the window.
     pub(super) fn frame_ui(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
@@ -192,7 +202,7 @@ impl App {
         }
         self.take_dropped_file(&ctx);
         self.layout_ui(ui, &mut scene);
-        self.take_pick(&mut scene);
+        self.take_pick(&ctx, &mut scene);
         self.render(&ctx, scene);
         self.export_box(&ctx);
         self.help_overlay(&ctx);
@@ -210,6 +220,10 @@ impl App {
 impl eframe::App for App {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         self.take_news(ctx);
+    }
+
+    fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
+        self.pace(ctx, input);
     }
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {

@@ -38,7 +38,7 @@ pub(super) struct PathDialogs {
 
 impl Default for PathDialogs {
     fn default() -> Self {
-        Self { chooser: Box::new(system_dialog), asking: None, typing: None }
+        Self::like(rfd::AsyncFileDialog::new())
     }
 }
 
@@ -55,6 +55,12 @@ struct Typing {
 }
 
 impl PathDialogs {
+    /// The desktop's dialogs, above the window that `dialog` belongs to.
+    pub(super) fn like(dialog: rfd::AsyncFileDialog) -> Self {
+        let open = move |purpose, suggestion: &str| system_dialog(&dialog, purpose, suggestion);
+        Self { chooser: Box::new(open), asking: None, typing: None }
+    }
+
     /// Opens the system's dialog; the answer comes through [`Self::take_path`].
     pub(super) fn ask(&mut self, ctx: &egui::Context, purpose: Purpose, suggestion: &str) {
         if self.asking.is_some() {
@@ -117,8 +123,8 @@ impl PathDialogs {
 }
 
 /// The dialog of the desktop.
-fn system_dialog(purpose: Purpose, suggestion: &str) -> Answer {
-    let dialog = rfd::AsyncFileDialog::new();
+fn system_dialog(dialog: &rfd::AsyncFileDialog, purpose: Purpose, suggestion: &str) -> Answer {
+    let dialog = dialog.clone();
     let chosen: Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match purpose {
         Purpose::Open => {
             let filter = ["toml", "obj", "png"];

@@ -16,7 +16,7 @@ use crate::threads;
 use crate::tone_mapping::srgb_bytes;
 use egui::{Color32, ColorImage};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -263,9 +263,4 @@ impl App {
             Some(Exported::Failed(reason)) => self.toasts.fail(reason),
         }
     }
-}
-
-/// The name that a picture will have, as far as it is known.
-pub(super) fn file_pattern(title: &str, folder: &Path, format: OutputFormat) -> String {
-    folder.join(format!("{title}-001.{}", format.ending())).display().to_string()
 }

@@ -1,6 +1,6 @@
 //! The box that renders a picture to a file. It stays open beside the live picture.
 
-use super::export::{ExportProgress, file_pattern};
+use super::export::ExportProgress;
 use super::export_settings::{Destination, ExportSettings, ExportSize};
 use super::fields::entered_text;
 use super::figures::{duration, noise_text};
@@ -9,7 +9,7 @@ use super::theme::ROW_HEIGHT;
 use super::widgets::{Figure, choice, row};
 use crate::io::output::OutputFormat;
 use egui::{Id, RichText, Ui};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Width of what is in the box, in points.
 const WIDTH: f32 = 348.0;
@@ -130,11 +130,9 @@ fn folder_ui(
     }
     row(ui, "", "", |ui| {
         let choose = ui.button("Choose…").on_hover_text("opens the system's dialog");
-        let path = file_pattern(facts.title, &settings.folder(), settings.format);
-        let name = Path::new(&path).file_name().unwrap_or_default().to_string_lossy();
-        let told = RichText::new(name).weak();
-        ui.add(egui::Label::new(told).truncate())
-            .on_hover_text(format!("{path}, or the next free number"));
+        let told = format!("{}-NNN.{}", facts.title, settings.format.ending());
+        ui.add(egui::Label::new(RichText::new(told).weak()).truncate())
+            .on_hover_text("NNN is the first free number");
         choose.clicked().then_some(ExportChoice::ChooseFolder)
     })
 }

@@ -1,6 +1,6 @@
 //! Lights in the picture: a mark for each, which selects and moves it.
 
-use super::theme;
+use super::{panels, theme};
 use crate::scene::description::{LightDescription, LightKind, SceneDescription};
 use crate::scene::orbit;
 use egui::{Color32, Id, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2};
@@ -31,6 +31,7 @@ pub(super) fn lights_in_picture(
             let id = ui.scope_id().with(("light beyond", index));
             if pointer_ui(ui, clip, at, id, light, index == *selected) {
                 *selected = index;
+                panels::reveal(ui.ctx(), &["Lights"]);
             }
             continue;
         }
@@ -40,6 +41,7 @@ pub(super) fn lights_in_picture(
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
         if response.clicked() || response.drag_started() {
             *selected = index;
+            panels::reveal(ui.ctx(), &["Lights"]);
         }
         let motion = response.drag_delta();
         if response.dragged()

@@ -15,7 +15,7 @@ const FRAME_SECS: f64 = 1.0 / 60.0;
 
 /// A whole window that draws to nothing.
 pub struct Headless {
-    app: App,
+    pub(super) app: App,
     ctx: egui::Context,
     size: Vec2,
     time: f64,
@@ -60,13 +60,14 @@ impl Headless {
     /// Everything that the window's own thread does for one frame, up to the graphics card.
     pub fn frame(&mut self) -> HeadlessFrame {
         self.time += FRAME_SECS;
-        let input = egui::RawInput {
+        let mut input = egui::RawInput {
             screen_rect: Some(egui::Rect::from_min_size(Pos2::ZERO, self.size)),
             time: Some(self.time),
             events: std::mem::take(&mut self.events),
             ..egui::RawInput::default()
         };
         let app = &mut self.app;
+        app.pace(&self.ctx, &mut input);
         let mut output = self.ctx.run_ui(input, |ui| {
             app.take_news(ui.ctx());
             app.frame_ui(ui);
@@ -76,14 +77,12 @@ impl Headless {
             egui::epaint::Primitive::Mesh(mesh) => mesh.indices.len() / 3,
             egui::epaint::Primitive::Callback(_) => 0,
         });
-        let deltas = std::mem::take(&mut output.textures_delta);
+        let deltas = output.textures_delta.set.values().flatten();
+        let images = deltas.map(|delta| delta.image.clone()).collect();
+        output.textures_delta.clear();
         let root = output.viewport_output.get(&ViewportId::ROOT);
         HeadlessFrame {
-            images: deltas
-                .set
-                .values()
-                .flat_map(|deltas| deltas.iter().map(|delta| delta.image.clone()))
-                .collect(),
+            images,
             n_triangles: n_triangles.sum(),
             wants_another: root.is_some_and(|root| root.repaint_delay == Duration::ZERO),
         }

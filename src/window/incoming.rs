@@ -2,7 +2,7 @@
 
 use super::app::{App, empty_scene};
 use super::files::{Written, file_title};
-use super::panels::PickFor;
+use super::panels::{self, PickFor};
 use super::probe::{described, part_of};
 use super::status::Probed;
 use super::structure::Part;
@@ -76,7 +76,7 @@ impl App {
     }
 
     /// Answers the question that a click in the picture asked of the renderer.
-    pub(super) fn take_pick(&mut self, scene: &mut SceneDescription) {
+    pub(super) fn take_pick(&mut self, ctx: &egui::Context, scene: &mut SceneDescription) {
         let Some(picked) = self.work.session.take_picked() else { return };
         let asked = self.awaited_click.filter(|click| click.at() == (picked.x, picked.y));
         let Some(click) = asked else {
@@ -99,7 +99,7 @@ impl App {
                 self.interface.navigation.pivot = Some(point);
                 self.toasts.say("the camera turns about this point now");
             }
-            (Click::Choose(..), _) => self.choose(scene, &pick.feature),
+            (Click::Choose(..), _) => self.choose(ctx, scene, &pick.feature),
             (Click::For(PickFor::Focus, ..), _) => scene.camera.focal_distance = Some(depth),
             (Click::For(PickFor::LightTarget, ..), Some(light)) => light.target = point,
             (Click::For(PickFor::LightPosition, ..), Some(light)) => {
@@ -113,16 +113,21 @@ impl App {
     }
 
     /// Shows in the panel what was clicked on: the light, or the object with what it is made of.
-    fn choose(&mut self, scene: &SceneDescription, feature: &Feature) {
+    fn choose(&mut self, ctx: &egui::Context, scene: &SceneDescription, feature: &Feature) {
         let selection = &mut self.interface.selection;
         let told = described(feature, scene, &self.work.assets, 1);
         match part_of(feature, scene) {
             None => return,
-            Some((Part::Light, index)) => selection.light = index,
+            Some((Part::Light, index)) => {
+                selection.light = index;
+                panels::reveal(ctx, &["Lights"]);
+            }
             Some((_, index)) => {
                 selection.object = index;
                 let mut materials = scene.materials.iter();
+                panels::reveal(ctx, &["Scene"]);
                 if let Some(index) = materials.position(|one| one.name == told.material) {
+                    panels::reveal(ctx, &["Materials", "Scene"]);
                     selection.material = index;
                     if let ColorOrTexture::Texture(name) = &scene.materials[index].diffuse {
                         let mut textures = scene.textures.iter();
@@ -134,7 +139,8 @@ impl App {
         }
         let Probed { object, material, .. } = told;
         let made_of = if material.is_empty() { String::new() } else { format!(" and {material}") };
-        self.toasts.say(format!("the panel shows {object}{made_of}"));
+        let shows = if self.interface.panel_shown { "the panel shows " } else { "" };
+        self.toasts.say(format!("{shows}{object}{made_of}"));
     }
 
     /// Opens a file that was dropped on the window.

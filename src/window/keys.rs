@@ -1,104 +1,16 @@
 //! What each key and each motion of the mouse does: one table that binds the keys, names them in
 //! tooltips and fills the help overlay.
 
-use super::views::View;
+mod action;
+pub(super) mod file;
+pub(super) mod number_pad;
+mod table;
+
+pub(super) use action::Action;
+pub(super) use table::{BINDINGS, MOTIONS};
+
 use egui::{Key, Modifiers};
-
-/// Something a key, a button or a menu makes the window do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Action {
-    /// Moves the camera so that the whole scene is in the picture.
-    FrameAll,
-    /// Back to the camera the scene was opened with.
-    HomeCamera,
-    /// Looks from +Z.
-    ViewFront,
-    /// Looks from +X.
-    ViewSide,
-    /// Looks from +Y.
-    ViewTop,
-    /// Stops refining, or goes on.
-    Pause,
-    /// Starts the picture again from its first sample.
-    Restart,
-    /// Half a stop brighter.
-    Brighter,
-    /// Half a stop darker.
-    Darker,
-    /// The next tone curve.
-    NextOperator,
-    /// Closes the lens, or opens it as it was.
-    ToggleLens,
-    /// Writes the picture on show to a file.
-    Snapshot,
-    /// Shows or hides the box that renders a picture of any size to a file.
-    RenderPicture,
-    /// Saves the scene where it came from.
-    Save,
-    /// Saves the scene under another name.
-    SaveAs,
-    /// Asks for a file to open.
-    Open,
-    /// Shows the start page with the gallery, or goes back to the scene.
-    Gallery,
-    /// Closes the scene.
-    CloseScene,
-    /// Puts the picture on the clipboard.
-    CopyImage,
-    /// Takes the last edit back.
-    Undo,
-    /// Makes the edit again that was taken back.
-    Redo,
-    /// Pins the picture to compare with, or lets it go.
-    Compare,
-    /// Shows the pinned picture alone, while its key is held.
-    ShowPinned,
-    /// Shows another view of the scene.
-    Show(View),
-    /// Opens or closes the magnifier.
-    Loupe,
-    /// Shows the panel, or hides it.
-    TogglePanel,
-    /// Fills the screen, or goes back to a window.
-    FullScreen,
-    /// Makes text and controls larger.
-    LargerText,
-    /// Makes text and controls smaller.
-    SmallerText,
-    /// Text and controls as large as the system wants them.
-    UsualText,
-    /// Shows or hides the list of keys.
-    Help,
-    /// Stops what is under way: loading, a choice, an overlay.
-    Cancel,
-}
-
-impl Action {
-    /// As the file of keys calls it: `frame-all`.
-    pub(super) fn name(self) -> String {
-        let mut name = String::new();
-        for c in format!("{self:?}").chars().filter(char::is_ascii_alphanumeric) {
-            if c.is_ascii_uppercase() && !name.is_empty() {
-                name.push('-');
-            }
-            name.push(c.to_ascii_lowercase());
-        }
-        name
-    }
-
-    /// Whether a key that is held does it again and again.
-    fn repeats(self) -> bool {
-        matches!(
-            self,
-            Self::Brighter
-                | Self::Darker
-                | Self::Undo
-                | Self::Redo
-                | Self::LargerText
-                | Self::SmallerText
-        )
-    }
-}
+use number_pad::pad_name;
 
 /// A key with its modifiers, and what it does.
 #[derive(Clone, Copy, Debug)]
@@ -112,71 +24,6 @@ pub(super) struct Binding {
     /// As the help overlay says it.
     pub(super) does: &'static str,
 }
-
-const COMMAND_SHIFT: Modifiers = Modifiers { shift: true, command: true, ..Modifiers::NONE };
-
-/// One line of the help for the keys of all views.
-const VIEWS: &str = "picture, albedo, normals, depth, blur, cost, samples, noise";
-
-/// Every key the window listens to, where the file of keys says nothing else. Where one action has
-/// several, the first is named in tooltips.
-pub(super) const BINDINGS: &[Binding] = &[
-    key(Action::FrameAll, Modifiers::NONE, Key::Home, "frame all"),
-    key(Action::HomeCamera, Modifiers::NONE, Key::Backspace, "back to the scene's own camera"),
-    key(Action::ViewFront, Modifiers::CTRL, Key::Num1, "front view"),
-    key(Action::ViewSide, Modifiers::CTRL, Key::Num3, "side view"),
-    key(Action::ViewTop, Modifiers::CTRL, Key::Num7, "top view"),
-    key(Action::Pause, Modifiers::NONE, Key::Space, "pause"),
-    key(Action::Restart, Modifiers::NONE, Key::R, "restart"),
-    key(Action::Brighter, Modifiers::NONE, Key::E, "half a stop brighter"),
-    key(Action::Darker, Modifiers::SHIFT, Key::E, "half a stop darker"),
-    key(Action::NextOperator, Modifiers::NONE, Key::T, "next tone curve"),
-    key(Action::ToggleLens, Modifiers::NONE, Key::D, "lens open or closed"),
-    key(Action::Snapshot, Modifiers::NONE, Key::F12, "snapshot of the picture as it is"),
-    key(Action::RenderPicture, Modifiers::SHIFT, Key::F12, "render a picture to a file…"),
-    key(Action::Save, Modifiers::COMMAND, Key::S, "save the scene"),
-    key(Action::SaveAs, COMMAND_SHIFT, Key::S, "save the scene as…"),
-    key(Action::Open, Modifiers::COMMAND, Key::O, "open…"),
-    key(Action::Gallery, Modifiers::COMMAND, Key::G, "gallery and recent files"),
-    key(Action::CloseScene, Modifiers::COMMAND, Key::W, "close the scene"),
-    key(Action::CopyImage, Modifiers::COMMAND, Key::C, "copy the picture"),
-    key(Action::Undo, Modifiers::COMMAND, Key::Z, "undo"),
-    key(Action::Redo, COMMAND_SHIFT, Key::Z, "redo"),
-    key(Action::Redo, Modifiers::COMMAND, Key::Y, "redo"),
-    key(Action::Compare, Modifiers::NONE, Key::X, "pin the picture and compare"),
-    key(Action::ShowPinned, Modifiers::NONE, Key::Backtick, "hold: the pinned picture"),
-    key(Action::Show(View::Picture), Modifiers::NONE, Key::Num1, VIEWS),
-    key(Action::Show(View::Albedo), Modifiers::NONE, Key::Num2, VIEWS),
-    key(Action::Show(View::Normals), Modifiers::NONE, Key::Num3, VIEWS),
-    key(Action::Show(View::Depth), Modifiers::NONE, Key::Num4, VIEWS),
-    key(Action::Show(View::Blur), Modifiers::NONE, Key::Num5, VIEWS),
-    key(Action::Show(View::Cost), Modifiers::NONE, Key::Num6, VIEWS),
-    key(Action::Show(View::Samples), Modifiers::NONE, Key::Num7, VIEWS),
-    key(Action::Show(View::Noise), Modifiers::NONE, Key::Num8, VIEWS),
-    key(Action::Loupe, Modifiers::NONE, Key::L, "loupe; hold for a look"),
-    key(Action::TogglePanel, Modifiers::NONE, Key::N, "panel"),
-    key(Action::FullScreen, Modifiers::NONE, Key::F11, "full screen"),
-    key(Action::LargerText, Modifiers::COMMAND, Key::Plus, "larger text and controls"),
-    key(Action::LargerText, Modifiers::COMMAND, Key::Equals, "larger text and controls"),
-    key(Action::SmallerText, Modifiers::COMMAND, Key::Minus, "smaller text and controls"),
-    key(Action::UsualText, Modifiers::COMMAND, Key::Num0, "text and controls of usual size"),
-    key(Action::Help, Modifiers::NONE, Key::H, "this help"),
-    key(Action::Help, Modifiers::NONE, Key::F1, "this help"),
-    key(Action::Cancel, Modifiers::NONE, Key::Escape, "cancel, close; never quits"),
-];
-
-/// Motions of the mouse over the picture, and what they do: for the help overlay.
-pub(super) const MOTIONS: &[(&str, &str)] = &[
-    ("left drag", "orbit"),
-    ("middle drag, Shift + left drag", "pan"),
-    ("wheel, Ctrl + right drag", "nearer, farther"),
-    ("right drag", "look about"),
-    ("right drag with W A S D, Q E", "fly"),
-    ("left click", "its object and material in the panel"),
-    ("Ctrl + left click", "focus here"),
-    ("double click", "orbit about this point"),
-    ("drop a file", "open it"),
-];
 
 /// The keys in force.
 #[derive(Clone, Debug)]
@@ -193,11 +40,12 @@ impl Default for Keys {
 
 impl Keys {
     /// The actions whose keys were pressed, taken out of the input. Keys alone do nothing while a
-    /// field has the focus; with Ctrl they do, but for those that text fields use themselves. While
-    /// the camera is `flying`, letters belong to it; Escape belongs to an open menu. A key that is
+    /// text field has the focus; with Ctrl they do, but for those that text fields use themselves.
+    /// Space presses the button that has the focus. While the camera is `flying`, letters belong to it; Escape belongs to an open menu. A key that is
     /// held does its action once, but for those that step.
     pub(super) fn pressed(&self, ctx: &egui::Context, flying: bool) -> Vec<Action> {
-        let typing = ctx.memory(|memory| memory.focused().is_some());
+        let typing = ctx.text_edit_focused();
+        let has_focus = ctx.memory(|memory| memory.focused().is_some());
         let in_menu = egui::Popup::is_any_open(ctx);
         let mut actions = Vec::new();
         ctx.input_mut(|input| {
@@ -209,6 +57,9 @@ impl Keys {
                     _ => binding.modifiers.command,
                 };
                 if typing && !works_while_typing {
+                    continue;
+                }
+                if has_focus && binding.key == Key::Space && binding.modifiers.is_none() {
                     continue;
                 }
                 if flying && !binding.modifiers.command {
@@ -236,9 +87,9 @@ impl Keys {
         actions
     }
 
-    /// Whether a key of an action is held down, and no field has the focus.
+    /// Whether a key of an action is held down, and no text field has the focus.
     pub(super) fn is_held(&self, ctx: &egui::Context, action: Action) -> bool {
-        let typing = ctx.memory(|memory| memory.focused().is_some());
+        let typing = ctx.text_edit_focused();
         let mut bindings = self.bindings.iter().filter(|binding| binding.action == action);
         !typing && ctx.input(|input| bindings.any(|binding| input.key_down(binding.key)))
     }
@@ -292,12 +143,8 @@ pub(super) fn keys_of(binding: &Binding) -> String {
     if binding.modifiers.alt {
         text.push_str("Alt+");
     }
-    text.push_str(binding.key.name());
+    text += &pad_name(binding.key).unwrap_or_else(|| binding.key.name().to_owned());
     text
-}
-
-const fn key(action: Action, modifiers: Modifiers, key: Key, does: &'static str) -> Binding {
-    Binding { action, modifiers, key, does }
 }
 
 #[cfg(test)]

@@ -113,7 +113,7 @@ impl App {
             accelerators: &AcceleratorKind::ALL.map(AcceleratorKind::name),
             tree: tree_lines(status.trees.as_ref()),
             convergence: Convergence {
-                noise: &self.work.noise,
+                noise: self.work.noise_of(status.generation),
                 seconds: status.seconds,
                 is_rendering: matches!(status.phase, Phase::Preview | Phase::Refining),
             },
@@ -203,10 +203,10 @@ impl App {
         } else {
             self.lens_overlay.hide();
         }
-        if let Some(legend) = self.picture.legend() {
+        let covers = self.pinned_ui(ui, picture, clip, scene);
+        if let Some(legend) = self.picture.legend().filter(|_| !covers) {
             legend_ui(ui, clip, legend);
         }
-        self.pinned_ui(ui, picture, clip, scene);
         self.look_closely(ui, &output, frame.as_deref(), scene);
         self.viewport = ViewportFacts {
             size,
@@ -217,16 +217,23 @@ impl App {
         };
     }
 
-    /// The pinned picture beside the live one, or alone while its key is held.
-    fn pinned_ui(&mut self, ui: &mut Ui, picture: Rect, clip: Rect, scene: &mut SceneDescription) {
+    /// The pinned picture beside the live one, or alone while its key is held: true where it
+    /// covers the live one.
+    fn pinned_ui(
+        &mut self,
+        ui: &mut Ui,
+        picture: Rect,
+        clip: Rect,
+        scene: &mut SceneDescription,
+    ) -> bool {
         let is_held = self.keys.is_held(ui.ctx(), Action::ShowPinned);
-        let Some(pinned) = &mut self.pinned else { return };
+        let Some(pinned) = &mut self.pinned else { return false };
         if is_held {
-            return pinned.show_alone(ui, picture, clip);
-        }
-        if let Some(choice) = pinned.show(ui, picture, clip, scene) {
+            pinned.show_alone(ui, picture, clip);
+        } else if let Some(choice) = pinned.show(ui, picture, clip, scene) {
             self.do_compare(scene, choice);
         }
+        is_held
     }
 
     /// What is under the cursor: for the status bar, and large in the loupe.

@@ -11,6 +11,7 @@ mod background;
 mod color;
 mod compare;
 mod dialogs;
+mod event_loop;
 mod export;
 mod export_dialog;
 mod export_settings;
@@ -24,13 +25,13 @@ mod help;
 mod icons;
 mod incoming;
 mod keys;
-mod keys_file;
 mod layout;
 mod lens_overlay;
 mod live;
 mod loupe;
 mod navigation;
 mod output;
+mod pacing;
 mod panels;
 mod parameter;
 mod picture;
@@ -59,7 +60,13 @@ mod work;
 pub use headless::{Headless, HeadlessFrame};
 
 use crate::loader::Source;
+use dialogs::PathDialogs;
+use event_loop::Listening;
+use std::cell::RefCell;
 use std::path::PathBuf;
+use std::rc::Rc;
+use winit::event_loop::EventLoop;
+use winit::platform::run_on_demand::EventLoopExtRunOnDemand as _;
 
 /// Names the program to the system, and its folder.
 const APP_ID: &str = "penumbra";
@@ -107,19 +114,28 @@ pub fn run(file: Option<PathBuf>) -> Result<(), WindowError> {
         dithering: false,
         ..eframe::NativeOptions::default()
     };
+    // Why there is no window, until there is one: what goes wrong before is kept by nobody else.
+    let failure = Rc::new(RefCell::new(Some("there is no OpenGL".to_owned())));
+    let told = Rc::clone(&failure);
     let create: eframe::AppCreator<'_> = Box::new(move |cc| {
         theme::install(&cc.egui_ctx);
         let own = own_folder();
         let remembered = settings::load(own.as_deref());
-        Ok(Box::new(app::App::new(&cc.egui_ctx, remembered, first, own)?))
+        let app = app::App::new(&cc.egui_ctx, remembered, first, own);
+        *told.borrow_mut() = app.as_ref().err().map(ToString::to_string);
+        let mut app = app?;
+        app.dialogs = PathDialogs::like(rfd::AsyncFileDialog::new().set_parent(cc));
+        Ok(Box::new(app))
     });
-    eframe::run_native(APP_ID, options, create).map_err(|error| match error {
-        eframe::Error::WinitEventLoop(_) => WindowError::NoDisplay,
-        eframe::Error::NoGlutinConfigs(_, error) => {
-            WindowError::NoWindow { reason: format!("there is no OpenGL ({error})") }
-        }
-        other => WindowError::NoWindow { reason: other.to_string() },
-    })
+    let mut event_loop =
+        EventLoop::with_user_event().build().map_err(|_| WindowError::NoDisplay)?;
+    let window = eframe::create_native(APP_ID, options, create, &event_loop);
+    let ended = event_loop.run_app_on_demand(&mut Listening(window));
+    let told = failure.take().or(ended.err().map(|error| error.to_string()));
+    match told {
+        Some(reason) => Err(WindowError::NoWindow { reason }),
+        None => Ok(()),
+    }
 }
 
 #[cfg(test)]

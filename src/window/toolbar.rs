@@ -173,6 +173,7 @@ fn menus(ui: &mut Ui, facts: &ToolbarFacts<'_>, chosen: &mut Option<ToolbarChoic
         ui.separator();
         item(ui, keys, "Lens open or closed", Action::ToggleLens, chosen);
         item(ui, keys, "Pin and compare", Action::Compare, chosen);
+        item(ui, keys, "Loupe", Action::Loupe, chosen);
         item(ui, keys, "Restart", Action::Restart, chosen);
         ui.separator();
         item(ui, keys, "Full screen", Action::FullScreen, chosen);

@@ -22,7 +22,7 @@ pub(super) struct RenderWork {
     resolved: Option<Resolved>,
     job: Option<RenderJob>,
     /// Samples and noise of the picture being refined.
-    pub(super) noise: Vec<(u32, Noise)>,
+    noise: Vec<(u32, Noise)>,
     noise_of: u64,
 }
 
@@ -107,6 +107,12 @@ impl RenderWork {
         self.job.as_ref() == Some(&frame.job)
     }
 
+    /// Samples and noise of the picture of that generation, in order of samples; of another one
+    /// nothing is known yet.
+    pub(super) fn noise_of(&self, generation: u64) -> &[(u32, Noise)] {
+        if self.noise_of == generation { &self.noise } else { &[] }
+    }
+
     /// Keeps the newest estimate of the noise for the graph; another picture starts it anew.
     pub(super) fn note_noise(&mut self, generation: u64, samples: u32, noise: Option<Noise>) {
         if self.noise_of != generation
@@ -159,4 +165,23 @@ fn same_picture(a: &SceneDescription, b: &SceneDescription) -> bool {
         && a.objects == b.objects
         && a.materials == b.materials
         && a.textures == b.textures
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_noise_of_one_picture_is_not_told_of_another() {
+        let mut work = RenderWork::new(Session::new(1, || {}).unwrap());
+        let noise = |percent| Noise { percent, uncertainty: 0.1, ratio: 0.5, step: None };
+        for samples in [4, 8] {
+            work.note_noise(3, samples, Some(noise(10.0)));
+        }
+        assert_eq!(work.noise_of(3).len(), 2, "its own");
+        assert!(work.noise_of(4).is_empty(), "of a picture that has only begun");
+        work.note_noise(4, 4, Some(noise(20.0)));
+        assert!(work.noise_of(3).is_empty(), "of a picture that is over");
+        assert_eq!(work.noise_of(4).len(), 1, "its own");
+    }
 }

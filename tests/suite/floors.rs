@@ -20,6 +20,7 @@ const RESERVED: &[(&str, &[&str])] = &[
     ("egui_plot::", &["window"]),
     ("egui_kittest::", &["window"]),
     ("eframe::", &["window"]),
+    ("winit::", &["window"]),
     ("rfd::", &["window"]),
     ("crate::threads", &["session", "loader", "window", "cli"]),
     ("thread::spawn", &["threads"]),

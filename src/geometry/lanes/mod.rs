@@ -90,6 +90,17 @@ pub(super) trait Isa {
     type F4: Lanes;
     type F8: Lanes;
     type F16: Lanes;
+    /// Which four of sixteen lanes.
+    type Four: Copy;
+
+    /// Names four lanes.
+    fn four(lanes: [usize; 4]) -> Self::Four;
+
+    /// Each of four lanes four times.
+    fn each_four_times(from: Self::F16, which: Self::Four) -> Self::F16;
+
+    /// Four numbers four times, one after another.
+    fn repeated(four: &[f32; 4]) -> Self::F16;
 
     /// One of six rows, without a check in builds without debug assertions.
     fn row(rows: &[[f32; 8]; 6], row: usize) -> Self::F8;

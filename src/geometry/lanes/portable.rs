@@ -9,6 +9,22 @@ impl Isa for Portable {
     type F4 = Array<4>;
     type F8 = Array<8>;
     type F16 = Array<16>;
+    type Four = [usize; 4];
+
+    #[inline(always)]
+    fn four(lanes: [usize; 4]) -> [usize; 4] {
+        lanes
+    }
+
+    #[inline(always)]
+    fn each_four_times(from: Array<16>, which: [usize; 4]) -> Array<16> {
+        Array(std::array::from_fn(|lane| from.0[which[lane / 4] % 16]))
+    }
+
+    #[inline(always)]
+    fn repeated(four: &[f32; 4]) -> Array<16> {
+        Array(std::array::from_fn(|lane| four[lane % 4]))
+    }
 
     #[inline(always)]
     fn row(rows: &[[f32; 8]; 6], row: usize) -> Array<8> {

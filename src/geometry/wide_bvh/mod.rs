@@ -105,6 +105,13 @@ impl Block {
         block
     }
 
+    /// How many triangles there are; each has another id.
+    #[inline(always)]
+    fn n_triangles(&self) -> u32 {
+        let [a, b, c, d] = self.ids;
+        1 + u32::from(b != a) + u32::from(c != b) + u32::from(d != c)
+    }
+
     fn set(&mut self, lane: usize, id: u32, corners: [Vec3; 3]) {
         self.ids[lane] = id;
         for (corner, p) in corners.into_iter().enumerate() {
@@ -145,6 +152,13 @@ impl WideBvh {
         } else {
             I::prefetch(&self.blocks[(reference & !LEAF) as usize]);
         }
+    }
+
+    /// Whether most of it is in slow memory, so that it pays to ask for it early.
+    #[inline(always)]
+    fn is_far(&self) -> bool {
+        const NEAR_BLOCKS: usize = 40_000;
+        self.blocks.len() > NEAR_BLOCKS
     }
 
     /// Number of nodes.

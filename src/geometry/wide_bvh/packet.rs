@@ -3,7 +3,8 @@
 //! Up to four groups of sixteen rays that go about the same way share a traversal: an interval of
 //! their origins and reciprocal directions is tested against eight boxes at once, the boxes that
 //! remain against the rays themselves, a group at a time, and only groups of which a ray touches a
-//! box go on with it. Each triangle is tested against sixteen rays. Rays that begin near each other
+//! box go on with it. A triangle is tested against sixteen rays, or, where few touch the box of a
+//! large mesh's block, four rays against its four triangles at once. Rays that begin near each other
 //! and part soon go together as far as several of them touch the same boxes; from there on they are
 //! left to [`stream`].
 //!
@@ -57,7 +58,11 @@ fn trace<I: Isa, T: Take>(bvh: &WideBvh, rays: &RayBatch, fleet: &mut Fleet, hit
         if n_alone < LANES {
             packet.start(bvh, rays, first, n, hits);
             packet.n_alone = n_alone;
-            packet.walk(bvh, hits);
+            if bvh.is_far() {
+                packet.walk::<T, true>(bvh, hits);
+            } else {
+                packet.walk::<T, false>(bvh, hits);
+            }
             packet.stragglers.hand_over(first, fleet);
         } else {
             let start = [Start { reference: bvh.root, enter: 0.0 }];
@@ -139,8 +144,8 @@ impl<I: Isa> Packet<I> {
         let [first, others @ ..] = &self.groups[..self.n_groups] else { return None };
         let is_negative = first.negative[axis] != 0;
         let (mut least, mut greatest) = (first.reciprocal[axis], first.reciprocal[axis]);
-        let low_of = |group: &Group<I>| group.origin[axis].sub(group.pad);
-        let high_of = |group: &Group<I>| group.origin[axis].add(group.pad);
+        let low_of = |group: &Group<I>| group.aim.origin[axis].sub(group.pad);
+        let high_of = |group: &Group<I>| group.aim.origin[axis].add(group.pad);
         let (mut low, mut high) = (low_of(first), high_of(first));
         let mut are_negative = first.negative[axis];
         for group in others {
@@ -170,23 +175,25 @@ impl<I: Isa> Packet<I> {
         })
     }
 
-    /// Takes the hits of all rays.
+    /// Takes the hits of all rays. Trees that are `FAR` from the processor are fetched ahead, and their
+    /// triangles, small beside a group, tested against the rays that touch their box.
     #[inline(always)]
-    fn walk<T: Take>(&mut self, bvh: &WideBvh, hits: &mut T) {
+    fn walk<T: Take, const FAR: bool>(&mut self, bvh: &WideBvh, hits: &mut T) {
+        let groups = (1 << self.n_groups) - 1;
         let mut current =
-            Entry { reference: bvh.root, enter: 0.0, groups: (1 << self.n_groups) - 1 };
+            Entry { reference: bvh.root, enter: 0.0, groups, rays: [u16::MAX; GROUPS] };
         self.stack.n = 0;
         loop {
             while current.reference & LEAF == 0 {
                 let node = &bvh.nodes[current.reference as usize];
-                match self.enter(bvh, node, current.groups) {
+                match self.enter::<FAR>(bvh, node, current.groups) {
                     Some(nearest) => current = nearest,
                     None => break,
                 }
             }
             if current.reference & LEAF != 0 {
                 let block = &bvh.blocks[(current.reference & !LEAF) as usize];
-                if self.visit(block, current.groups, hits) && self.farthest < 0.0 {
+                if self.visit::<T, FAR>(block, &current, hits) && self.farthest < 0.0 {
                     return;
                 }
             }
@@ -202,7 +209,7 @@ impl<I: Isa> Packet<I> {
 
     /// The nearest of the children that some ray touches; the others go onto the stack.
     #[inline(always)]
-    fn enter(&mut self, bvh: &WideBvh, node: &Node, groups: u32) -> Option<Entry> {
+    fn enter<const FAR: bool>(&mut self, bvh: &WideBvh, node: &Node, groups: u32) -> Option<Entry> {
         let (mut enter, mut leave) = (I::F8::splat(0.0), I::F8::splat(self.farthest));
         for interval in &self.intervals {
             let Some(interval) = interval else { continue };
@@ -225,23 +232,28 @@ impl<I: Isa> Packet<I> {
             let child = left.trailing_zeros() as usize;
             left &= left - 1;
             let reference = node.children[child];
-            let mut touching = 0;
+            let (mut touching, mut rays) = (0, [0; GROUPS]);
             let mut asked = groups;
             while asked != 0 {
-                let group = asked.trailing_zeros() as usize;
+                let group = asked.trailing_zeros() as usize % GROUPS;
                 asked &= asked - 1;
-                let (rays, entered) = self.groups[group % GROUPS].touches(node, child);
-                let n = rays.count_ones() as usize;
+                let (touch, entered) = self.groups[group].touches(node, child);
+                if FAR {
+                    rays[group] = touch as u16;
+                }
+                let n = touch.count_ones() as usize;
                 let stays =
-                    n > self.n_alone || (n > 0 && !self.stragglers.add(rays, entered, reference));
+                    n > self.n_alone || (n > 0 && !self.stragglers.add(touch, entered, reference));
                 touching |= u32::from(stays) << group;
             }
             if touching != 0 {
-                if self.n_alone > 0 {
+                if FAR || self.n_alone > 0 {
                     bvh.prefetch::<I>(reference);
                 }
-                self.stack
-                    .insert(base, Entry { reference, enter: enters[child], groups: touching });
+                self.stack.insert(
+                    base,
+                    Entry { reference, enter: enters[child], groups: touching, rays },
+                );
             }
         }
         if self.stack.n == base { None } else { self.stack.pop() }
@@ -249,14 +261,20 @@ impl<I: Isa> Packet<I> {
 
     /// Tests the triangles of a block; tells whether a limit changed.
     #[inline(always)]
-    fn visit<T: Take>(&mut self, block: &Block, groups: u32, hits: &mut T) -> bool {
-        let mut left = groups;
+    fn visit<T: Take, const FAR: bool>(
+        &mut self,
+        block: &Block,
+        entry: &Entry,
+        hits: &mut T,
+    ) -> bool {
+        let mut left = entry.groups;
         let mut is_changed = false;
         while left != 0 {
             let index = left.trailing_zeros() as usize % GROUPS;
             left &= left - 1;
             let group = &mut self.groups[index];
-            if group.visit(block, self.first + index * LANES, hits) {
+            let rays = if FAR { u32::from(entry.rays[index]) } else { I::F16::ALL };
+            if group.visit(block, rays, self.first + index * LANES, hits) {
                 group.farthest = group.limit.greatest();
                 is_changed = true;
             }
@@ -311,16 +329,18 @@ impl Stragglers {
     }
 }
 
-/// A place that waits, with the parameter at which it is entered and the groups that go there.
+/// A place that waits, with the parameter at which it is entered, the groups that go there, and which
+/// of their rays.
 #[derive(Clone, Copy)]
 struct Entry {
     reference: u32,
     enter: f32,
     groups: u32,
+    rays: [u16; GROUPS],
 }
 
 impl Entry {
-    const NONE: Self = Self { reference: 0, enter: 0.0, groups: 0 };
+    const NONE: Self = Self { reference: 0, enter: 0.0, groups: 0, rays: [0; GROUPS] };
 }
 
 struct Stack {

@@ -1,6 +1,7 @@
 use super::*;
 use crate::math::PrimitiveId;
 use crate::math::sampler::Sampler;
+use crate::math::vectorized::at_every_level;
 
 fn number(i: u32, k: u32) -> f32 {
     2.0 * Sampler::Random { seed: 5 }.numbers(i, k, 0).pair(0)[0] - 1.0
@@ -28,14 +29,16 @@ fn soup(n: u32) -> Mesh {
     mesh
 }
 
-/// Coherent ones, random ones, ones along axes and in the plane of triangles, ones with ends.
+/// Coherent ones, random ones, ones along axes and in the plane of triangles, ones with ends, and some
+/// that go the same way nearly but not along the same largest axis.
 fn rays(n: u32) -> RayBatch {
     let mut batch = RayBatch::default();
     for i in 0..n {
-        let mut ray = match i / 64 % 4 {
+        let mut ray = match i / 64 % 5 {
             0 => Ray::new(Vec3::new(0.1, 0.2, 4.0), Vec3::new(0.01 * (i % 64) as f32, 0.1, -2.0)),
             1 => Ray::new(3.0 * point(i, 50), point(i, 60)),
             2 => Ray::new(Vec3::new(-3.0, 0.25, number(i, 70)), Vec3::X),
+            3 => Ray::new(3.0 * point(7, 80), Vec3::ONE + 0.02 * point(i, 90)),
             _ => Ray::new(point(i, 80), Vec3::new(1.0, 0.1 * number(i, 90), -1.0)),
         };
         if i % 3 == 0 {
@@ -101,16 +104,22 @@ fn rays_of_large_meshes_meet_the_same_alone_and_together() {
         let bvh = WideBvh::build(&soup(n_triangles), &AtomicBool::new(false)).unwrap();
         assert!(n_blocks.contains(&bvh.blocks.len()), "{} blocks", bvh.blocks.len());
         let rays = rays(4096 + 9);
-        let mut nearest: Vec<Nearest> = rays.t_max.iter().map(|t| Nearest::new(*t)).collect();
-        let mut blocked = vec![false; rays.len()];
-        bvh.intersect_batch(&rays, 2, &mut nearest);
-        bvh.occluded_batch(&rays, 2, &mut blocked);
+        let together = at_every_level(|| {
+            let mut nearest: Vec<Nearest> = rays.t_max.iter().map(|t| Nearest::new(*t)).collect();
+            let mut blocked = vec![false; rays.len()];
+            bvh.intersect_batch(&rays, 2, &mut nearest);
+            bvh.occluded_batch(&rays, 2, &mut blocked);
+            (nearest, blocked)
+        });
         for i in 0..rays.len() {
             let ray = rays.ray(i);
             let mut one = Search::new(&ray);
             bvh.intersect(&ray, 2, &mut one);
-            assert_eq!(nearest[i].hit(), one.nearest.hit(), "ray {i} of {n_triangles}");
-            assert_eq!(blocked[i], one.nearest.is_hit(), "ray {i} of {n_triangles}, blocked");
+            for (level, (nearest, blocked)) in &together {
+                let case = format!("ray {i} of {n_triangles}, {level:?}");
+                assert_eq!(nearest[i].hit(), one.nearest.hit(), "{case}");
+                assert_eq!(blocked[i], one.nearest.is_hit(), "{case}, blocked");
+            }
         }
     }
 }

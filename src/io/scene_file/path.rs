@@ -52,10 +52,9 @@ impl ParameterPath {
                 (Some(self.entry(root, section, noun, name)?), rest)
             }
             (Some(noun), None) => {
+                let (name, a) = (section.name(), if noun == "object" { "an" } else { "a" });
                 return Err(self.error(format!(
-                    "names all {}, not a parameter; write {}.NAME.KEY, with the name of a {noun}",
-                    section.name(),
-                    section.name()
+                    "names all {name}, not a parameter; write {name}.NAME.KEY, with the name of {a} {noun}"
                 )));
             }
             (None, _) => (None, rest),

@@ -37,8 +37,10 @@ impl LightChoice {
         loop {
             let open = self.chances.iter().filter(|w| **w < limit);
             let next = open.sum::<f32>() / n.saturating_sub(n_apart).max(1) as f32;
-            let now_apart = self.chances.iter().filter(|w| **w >= next && **w > 0.0).count();
+            // Never up again, also where the sum is rounded: so the number apart only grows, and the
+            // loop ends.
             limit = next.min(limit);
+            let now_apart = self.chances.iter().filter(|w| **w >= limit && **w > 0.0).count();
             if now_apart == n_apart || now_apart >= n {
                 break;
             }
@@ -202,6 +204,32 @@ fn weight(light: &Light, shading: &Shading<'_>, wo: Vec3) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Sums of these are rounded so that the limit would go up and down for ever.
+    #[test]
+    fn rounding_does_not_keep_a_choice_from_ending() {
+        let weights = [
+            0.118297495,
+            0.49895427,
+            0.27127132,
+            0.7150659,
+            0.3227838,
+            0.00016661732,
+            0.4750736,
+            0.1633326,
+            0.07970098,
+            0.3268443,
+            0.27086318,
+            0.017413866,
+            0.2398373,
+            0.06975538,
+            0.13943109,
+            0.5855167,
+        ];
+        let mut choice = LightChoice { chances: weights.to_vec(), chosen: Vec::new() };
+        choice.take(8, 0.5);
+        assert_eq!(choice.chosen.len(), 8, "{:?}", choice.chosen);
+    }
 
     /// Over all numbers every light is chosen as often as its chance says; chances are in proportion
     /// to the weights, or 1, and no light with weight is left out.

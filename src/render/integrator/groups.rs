@@ -34,7 +34,7 @@ impl Groups {
 
     /// Takes a path and what it has met.
     pub(super) fn push(&mut self, world: &World, path: u32, hit: Hit) {
-        let number = world.first_slot[hit.id.object as usize] + world.slot_at(hit);
+        let number = world.slot_number(hit);
         let count = &mut self.counts[number as usize];
         if *count == 0 {
             self.seen.push(number);

@@ -2,17 +2,25 @@
 
 use super::{TileRenderer, power};
 use crate::color::Rgb;
-use crate::math::Ray;
 use crate::math::vectorized::{BLOCK, Lane, NO_LANES, set_vec3, vec3};
+use crate::math::{Ray, RayBlock};
+use crate::scene::light::Light;
 
 impl TileRenderer<'_> {
     /// What the rays of a wave meet: adds visible lights and the background, and groups the rest.
     pub(super) fn meet(&mut self) {
         let world = self.world;
+        let seen = world.job.scene.lights.iter().enumerate();
+        let seen: Vec<_> = seen.filter(|(_, light)| light.visible && light.has_extent()).collect();
+        let mut rays = RayBlock::IDLE;
         self.groups.clear();
         for start in (0..self.paths.len()).step_by(BLOCK) {
             let n = BLOCK.min(self.paths.len() - start);
-            let lights = self.lights_before(start, n);
+            let mut lights = [None; BLOCK];
+            if !seen.is_empty() {
+                self.rays.copy_to(start, n, &mut rays);
+                self.lights_before(&seen, start, n, &rays, &mut lights);
+            }
             for (i, light) in lights.into_iter().enumerate().take(n) {
                 let index = start + i;
                 let path = &self.paths[index];
@@ -58,24 +66,29 @@ impl TileRenderer<'_> {
 
     /// Number of the nearest visible light before what each of `n` rays meets; suns are behind
     /// everything.
-    fn lights_before(&self, start: usize, n: usize) -> Lane<Option<u32>> {
-        let mut nearest = [None; BLOCK];
-        let lights = self.world.job.scene.lights.iter().enumerate();
-        let mut rays = None;
+    fn lights_before(
+        &self,
+        lights: &[(usize, &Light)],
+        start: usize,
+        n: usize,
+        rays: &RayBlock,
+        nearest: &mut Lane<Option<u32>>,
+    ) {
         let (mut best, mut t) = ([f32::INFINITY; BLOCK], [f32::NAN; BLOCK]);
-        for (index, light) in lights.filter(|(_, light)| light.visible && light.has_extent()) {
-            let rays = rays.get_or_insert_with(|| self.rays.block(start, n));
+        for (index, light) in lights {
             light.intersect_block(rays, &mut t);
+            if !(0..n).any(|i| t[i] > 0.0) {
+                continue;
+            }
             for i in 0..n {
                 let t_surface = self.hits[start + i].hit().map_or(f32::INFINITY, |hit| hit.t);
                 let is_first = nearest[i].is_none() || t[i] < best[i];
                 let is_before = t[i] < t_surface || t_surface == f32::INFINITY;
                 if t[i] > 0.0 && is_first && is_before {
-                    (nearest[i], best[i]) = (Some(index as u32), t[i]);
+                    (nearest[i], best[i]) = (Some(*index as u32), t[i]);
                 }
             }
         }
-        nearest
     }
 
     /// Radiance of the nearest visible light before `t_surface`; suns are behind everything.

@@ -64,20 +64,22 @@ impl Shadows {
     ) {
         let mut rays = RayBlock::IDLE;
         shadow_rays(block, samples, &mut rays);
-        let mut n_lit = 0;
-        for i in 0..n {
-            let light = vec3(light, i);
-            if light == Rgb::ZERO {
-                continue;
-            }
+        rays.source = block.surface.source;
+        let is_lit = |i: &usize| vec3(light, *i) != Rgb::ZERO;
+        let n_first = (0..n).take_while(is_lit).count();
+        self.contributions.extend((0..n_first).map(|i| vec3(light, i)));
+        self.slots.extend_from_slice(&slots[..n_first]);
+        // Where all are lit nothing moves up.
+        let mut n_lit = n_first;
+        for i in (n_first..n).filter(is_lit) {
             self.slots.push(slots[i]);
-            self.contributions.push(light);
+            self.contributions.push(vec3(light, i));
             for axis in 0..3 {
                 rays.origin[axis][n_lit] = rays.origin[axis][i];
                 rays.direction[axis][n_lit] = rays.direction[axis][i];
             }
             rays.t_max[n_lit] = rays.t_max[i];
-            rays.source[n_lit] = block.surface.source[i];
+            rays.source[n_lit] = rays.source[i];
             n_lit += 1;
         }
         self.rays.append(&rays, n_lit);
@@ -93,15 +95,18 @@ impl Shadows {
             };
             let is_clear = |object: u32| world.is_clear[object as usize];
             world.geometry.transmittance(&self.rays, clear, is_clear, &mut self.shares);
-        } else {
-            world.geometry.occluded(&self.rays, &mut self.blocked);
-            let share = |blocked: &bool| if *blocked { Rgb::ZERO } else { Rgb::ONE };
-            self.shares.clear();
-            self.shares.extend(self.blocked.iter().map(share));
+            let arriving = self.contributions.iter().zip(&self.shares);
+            for (slot, (contribution, share)) in self.slots.iter().zip(arriving) {
+                radiance[*slot as usize] += *contribution * *share;
+            }
+            return;
         }
-        let arriving = self.contributions.iter().zip(&self.shares);
-        for (slot, (contribution, share)) in self.slots.iter().zip(arriving) {
-            radiance[*slot as usize] += *contribution * *share;
+        world.geometry.occluded(&self.rays, &mut self.blocked);
+        let arriving = self.contributions.iter().zip(&self.blocked);
+        for (slot, (contribution, is_blocked)) in self.slots.iter().zip(arriving) {
+            if !is_blocked {
+                radiance[*slot as usize] += *contribution;
+            }
         }
     }
 }

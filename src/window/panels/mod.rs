@@ -23,7 +23,7 @@ pub(super) use textures::textures_ui;
 
 use super::theme;
 use egui::collapsing_header::CollapsingState;
-use egui::{Sense, TextStyle, Ui, Vec2};
+use egui::{Align, Id, Sense, TextStyle, Ui, Vec2};
 
 /// What a click in the picture is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +53,25 @@ pub(super) struct Selection {
     pub(super) renaming: Option<parts::Renaming>,
 }
 
+/// Opens the groups of these titles in this frame or the next, and brings the first into sight.
+pub(super) fn reveal(ctx: &egui::Context, titles: &[&'static str]) {
+    ctx.data_mut(|data| data.insert_temp(reveal_id(), titles.to_vec()));
+}
+
+/// Where a group is in the list of those to be opened, once.
+fn take_reveal(ctx: &egui::Context, title: &str) -> Option<usize> {
+    ctx.data_mut(|data| {
+        let titles = data.get_temp_mut_or_default::<Vec<&'static str>>(reveal_id());
+        let place = titles.iter().position(|revealed| *revealed == title)?;
+        titles[place] = "";
+        Some(place)
+    })
+}
+
+fn reveal_id() -> Id {
+    Id::unique("groups to be opened")
+}
+
 /// A group that opens and closes, with a short summary while it is closed.
 pub(super) fn section(
     ui: &mut Ui,
@@ -63,11 +82,14 @@ pub(super) fn section(
 ) {
     let id = ui.make_persistent_id(("section", title));
     let mut state = CollapsingState::load_with_default_open(ui.ctx(), id, open_at_first);
+    let revealed = take_reveal(ui.ctx(), title);
+    let was_open = state.is_open();
+    state.set_open(was_open || revealed.is_some());
     let response = header(ui, title, summary, &state);
     if response.clicked() {
         state.toggle(ui);
     }
-    state.show_body_unindented(ui, |ui| {
+    let body = state.show_body_unindented(ui, |ui| {
         egui::Frame::new()
             .inner_margin(egui::Margin { left: 4, right: 4, top: 2, bottom: 8 })
             .show(ui, |ui| {
@@ -75,6 +97,12 @@ pub(super) fn section(
                 contents(ui);
             });
     });
+    if revealed == Some(0) {
+        // A group that was open already moves only as far as it has to.
+        let body = body.filter(|_| was_open).map(|body| body.response.rect);
+        let whole = body.map_or(response.rect, |body| body.union(response.rect));
+        ui.scroll_to_rect(whole, (!was_open).then_some(Align::TOP));
+    }
     let line = theme::hairline(ui.visuals());
     let rect = ui.max_rect();
     ui.painter().hline(rect.x_range(), ui.cursor().top() - 2.0, line);

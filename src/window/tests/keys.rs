@@ -4,6 +4,7 @@ use super::whole::{scene_file, wait_until, window, window_with};
 use crate::loader::Source;
 use crate::window::app::App;
 use crate::window::state::Remembered;
+use crate::window::views::View;
 use egui::{Event, Key, Modifiers, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -39,6 +40,32 @@ fn a_key_that_is_held_switches_once_and_steps_again_and_again() {
     hold(&mut harness, Key::E, 4);
     let exposure = harness.state().document.description.tone_mapping.exposure;
     assert_eq!(exposure, 2.0, "a held key does not step");
+}
+
+#[test]
+fn keys_alone_do_nothing_in_a_text_field_and_all_they_do_elsewhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&scene_file(folder.path()), SIZE);
+    let view = |harness: &Harness<'_, App>| harness.state().interface.display.view;
+    for (role, name) in [(Role::Slider, "Aperture"), (Role::Button, "Pick in picture")] {
+        harness.get_by_role_and_label(role, name).focus();
+        harness.run_steps(2);
+        for (key, shown) in [(Key::Num2, View::Albedo), (Key::Num1, View::Picture)] {
+            harness.key_press(key);
+            harness.run_steps(2);
+            assert_eq!(view(&harness), shown, "{key:?} while {name} has the focus");
+        }
+    }
+    harness.key_press(Key::Space);
+    harness.run_steps(2);
+    let interface = &harness.state().interface;
+    assert!(interface.picking.is_some(), "Space does not press the button that has the focus");
+    assert!(!interface.is_paused, "Space does two things");
+    harness.get_by_role_and_label(Role::SpinButton, "Aperture").click();
+    harness.run_steps(3);
+    harness.key_press(Key::Num2);
+    harness.run_steps(2);
+    assert_eq!(view(&harness), View::Picture, "a key alone acts in a text field");
 }
 
 #[test]

@@ -1,10 +1,12 @@
 //! Every motion of the hand over the picture moves the camera as the table of keys says, and is one
 //! step of undo.
 
-use super::whole::{scene_file, wait_until, window};
+use super::whole::{PATIENCE, scene_file, wait_until, window};
+use crate::loader::Source;
 use crate::scene::description::CameraDescription;
 use crate::scene::orbit;
 use crate::window::app::App;
+use crate::window::headless::Headless;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Role, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -338,4 +340,34 @@ fn scrolling_that_begins_again_after_a_rest_is_a_step_of_its_own() {
     let between = hand.camera();
     pinch(&mut hand);
     hand.assert_one_step(&between, "the second burst");
+}
+
+/// As when a frame takes so long that all of a drag falls into it.
+#[test]
+fn drags_within_one_frame_turn_the_camera_once_each() {
+    let folder = tempfile::tempdir().unwrap();
+    let source = Source::File(scene_file(folder.path()));
+    let mut window = Headless::new(source, [1024.0, 700.0]).unwrap();
+    let since = std::time::Instant::now();
+    while !window.has_picture() {
+        assert!(since.elapsed() < PATIENCE, "waited in vain for a picture");
+        window.frame();
+        std::thread::yield_now();
+    }
+    let eye = |window: &Headless| window.app.document.description.camera.eye;
+    let mut eyes = vec![eye(&window)];
+    for _ in 0..3 {
+        window.drag([60.0, 0.0]);
+        window.release();
+    }
+    for _ in 0..12 {
+        window.frame();
+        if eyes.last() != Some(&eye(&window)) {
+            eyes.push(eye(&window));
+        }
+    }
+    assert_eq!(eyes.len(), 4, "the camera was at {eyes:?}");
+    let steps: Vec<f64> = eyes.windows(2).map(|pair| distance(pair[0], pair[1])).collect();
+    let same = steps.iter().all(|step| (step - steps[0]).abs() < 1e-9);
+    assert!(same && 0.5 < steps[0], "the drags turned it by {steps:?}");
 }

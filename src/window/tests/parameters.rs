@@ -279,6 +279,8 @@ fn a_right_click_resets_a_parameter_to_the_default_of_the_file() {
         harness.run();
         harness.get_by_role_and_label(control, "Aperture").click_secondary();
         harness.run();
+        let radius = harness.state().scene.camera.aperture_radius;
+        assert_eq!(radius, 0.3, "opening the menu of the {control:?} changed the figure");
         harness.get_by_role_and_label(Role::Button, "Reset").click();
         harness.run();
         let radius = harness.state().scene.camera.aperture_radius;

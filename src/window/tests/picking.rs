@@ -6,7 +6,7 @@ use crate::scene::description::Triple;
 use crate::window::app::App;
 use egui::{Key, Modifiers, Role};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 const SIZE: [f32; 2] = [1024.0, 700.0];
 
@@ -80,6 +80,35 @@ fn a_light_is_aimed_and_put_where_the_hand_clicks_in_one_step_each() {
         harness.run_steps(3);
         assert_eq!(harness.state().document.description, expected, "not one step each");
     }
+}
+
+#[test]
+fn a_click_opens_the_groups_of_what_is_there_and_brings_them_into_sight() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = ready(folder.path());
+    let group = |harness: &Harness<'_, App>, title: &str| {
+        let node = harness.get_by_role_and_label(Role::DisclosureTriangle, title);
+        let is_open = node.accesskit_node().toggled() == Some(egui::accesskit::Toggled::True);
+        (is_open, node.rect())
+    };
+    harness.get_by_role_and_label(Role::DisclosureTriangle, "Materials").click_accesskit();
+    harness.run_steps(8);
+    for title in ["Materials", "Scene"] {
+        assert!(!group(&harness, title).0, "{title} is open before the click");
+    }
+    click_on_ball(&mut harness);
+    harness.run_steps(12);
+    let (is_open, materials) = group(&harness, "Materials");
+    assert!(is_open && group(&harness, "Scene").0, "a group stays closed");
+    let ball = harness.get_by_role_and_label(Role::SpinButton, "Alpha x").rect();
+    for (name, rect) in [("the title", materials), ("alpha x", ball)] {
+        let seen = 38.0 <= rect.top() && rect.bottom() <= SIZE[1] - 26.0;
+        assert!(seen, "{name} is at {rect:?}");
+    }
+    // What is in sight stays where it is.
+    click_on_ball(&mut harness);
+    harness.run_steps(12);
+    assert_eq!(group(&harness, "Materials").1, materials, "the panel moved for nothing");
 }
 
 #[test]

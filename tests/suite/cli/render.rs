@@ -218,6 +218,50 @@ fn warnings_change_no_status_and_quiet_silences_them_but_no_error() {
     assert!(error.contains("gone.toml"), "{error}");
 }
 
+/// Of the library's materials only those with a picture count.
+#[test]
+fn pictures_on_meshes_without_texture_coordinates_are_told() {
+    let place = Place::with_mesh();
+    let scene = |more: &str, material: &str| {
+        format!(
+            "[camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\n\
+             [[textures]]\nname = 'tiles'\ntype = 'image'\nfile = 'm.png'\n\
+             [[textures]]\nname = 'spots'\ntype = 'spots'\n\
+             [[materials]]\nname = 'tiled'\n{more}\n\
+             [[objects]]\ntype = 'mesh'\nfile = 'm.obj'\n{material}\n"
+        )
+    };
+    let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nvt 0 0\n";
+    let (bare, half) =
+        (format!("{corners}f 1 2 3\n"), format!("{corners}f 1/1 2/1 3/1\nf 1 2 4\n"));
+    let (none, some) = ("m.obj: has no texture coordinates", "m.obj: has faces without texture");
+    let (image, bump) = ("diffuse = 'tiles'", "bump = {texture = 'tiles', height = 0.1}");
+    let cases = [
+        (bare.as_str(), image, "material = 'tiled'", Some(none)),
+        (&bare, bump, "material = 'tiled'", Some(none)),
+        (&half, image, "material = 'tiled'", Some(some)),
+        (&bare, "diffuse = 'spots'", "material = 'tiled'", None),
+        (&bare, image, "", None),
+        // The face without any has a material without a picture.
+        (super::MESH, image, "", None),
+        (&super::MESH.replace("4/4", "4"), image, "", Some(some)),
+    ];
+    for (mesh, more, material, expected) in cases {
+        place.write("m.obj", mesh.as_bytes());
+        place.write("s.toml", scene(more, material).as_bytes());
+        let run = place.run(&["info", "s.toml"]);
+        assert_eq!(run.status, Some(0), "{}", run.stderr);
+        let told = run.stderr.lines().find(|line| line.contains("texture coord"));
+        let is_as_expected =
+            expected.is_none_or(|says| told.is_some_and(|told| told.contains(says)));
+        assert!(
+            is_as_expected && expected.is_some() == told.is_some(),
+            "{mesh} {more}: {}",
+            run.stderr
+        );
+    }
+}
+
 #[test]
 fn a_mesh_in_a_scenes_place_is_seen_on_its_ground() {
     let place = Place::with_mesh();

@@ -20,9 +20,11 @@ fn a_system_without_threads_or_memory_is_told_with_what_would_help() {
     assert_eq!(super::failures::files_in(&place), ["ball.toml"], "a picture of nothing");
     let run = limited(1 << 20, "");
     assert_eq!(run.status, Some(0), "{}", run.stderr);
-    let run = limited(44 << 10, "");
-    let is_told = run.stderr.starts_with("error: penumbra itself takes 16 MiB of memory, and ");
-    assert!(run.status == Some(1) && is_told, "{:?}: {}", run.status, run.stderr);
+    // How much the program itself takes up depends on what is built into it.
+    let runs: Vec<Run> = (28..=48).step_by(2).map(|mib| limited(mib << 10, "")).collect();
+    let says = "error: penumbra itself takes 16 MiB of memory, and ";
+    let is_told = |run: &Run| run.status == Some(1) && run.stderr.starts_with(says);
+    assert!(runs.iter().any(is_told), "{:?}", runs.last().map(|run| &run.stderr));
 }
 
 /// What a mesh will take is asked while it is read, and once more for each of its crease angles.
@@ -47,7 +49,8 @@ fn a_mesh_without_memory_is_refused_with_both_figures() {
     let says = "m.obj: the mesh once more, for another crease angle, takes ";
     assert!(run.status == Some(1) && run.stderr.contains(says), "{:?}: {}", run.status, run.stderr);
     place.write("s.toml", format!("{BALL}{}", angles(3)).as_bytes());
-    let run = run_within(&place, 160 << 10, "info s.toml");
+    // Threads may reserve 64 MiB each.
+    let run = run_within(&place, 400 << 10, "info s.toml");
     assert_eq!(run.status, Some(0), "{}", run.stderr);
 }
 

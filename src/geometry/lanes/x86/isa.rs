@@ -66,7 +66,36 @@ impl Isa for Avx2 {
     type F4 = F4;
     type F8 = F8;
     type F16 = Pair<F8>;
+    /// For each half of the result the places in a half, and which half.
+    type Four = [(__m256i, __m256); 2];
 
+    #[inline(always)]
+    fn four(lanes: [usize; 4]) -> [(__m256i, __m256); 2] {
+        let half = |a: usize, b: usize| unsafe {
+            let (a, b) = (a as i32, b as i32);
+            let places = _mm256_setr_epi32(a, a, a, a, b, b, b, b);
+            // The bit of the upper half becomes the sign.
+            (places, _mm256_castsi256_ps(_mm256_slli_epi32::<28>(places)))
+        };
+        [half(lanes[0], lanes[1]), half(lanes[2], lanes[3])]
+    }
+    #[inline(always)]
+    fn each_four_times(from: Pair<F8>, which: [(__m256i, __m256); 2]) -> Pair<F8> {
+        let half = |(places, is_upper): (__m256i, __m256)| unsafe {
+            let lower = _mm256_permutevar8x32_ps(from.0.0, places);
+            let upper = _mm256_permutevar8x32_ps(from.1.0, places);
+            F8(_mm256_blendv_ps(lower, upper, is_upper))
+        };
+        Pair(half(which[0]), half(which[1]))
+    }
+    #[inline(always)]
+    fn repeated(four: &[f32; 4]) -> Pair<F8> {
+        let twice = F8(unsafe {
+            let four = _mm_loadu_ps(four.as_ptr());
+            _mm256_set_m128(four, four)
+        });
+        Pair(twice, twice)
+    }
     #[inline(always)]
     fn row(rows: &[[f32; 8]; 6], index: usize) -> F8 {
         row(rows, index)
@@ -117,7 +146,25 @@ impl Isa for Avx512 {
     type F4 = F4;
     type F8 = F8;
     type F16 = F16;
+    type Four = __m512i;
 
+    #[inline(always)]
+    fn four(lanes: [usize; 4]) -> __m512i {
+        let [a, b, c, d] = lanes.map(|lane| lane as i32);
+        unsafe {
+            let which = _mm512_castsi128_si512(_mm_setr_epi32(a, b, c, d));
+            let quads = _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);
+            _mm512_permutexvar_epi32(quads, which)
+        }
+    }
+    #[inline(always)]
+    fn each_four_times(from: F16, which: __m512i) -> F16 {
+        F16(unsafe { _mm512_permutexvar_ps(which, from.0) })
+    }
+    #[inline(always)]
+    fn repeated(four: &[f32; 4]) -> F16 {
+        F16(unsafe { _mm512_broadcast_f32x4(_mm_loadu_ps(four.as_ptr())) })
+    }
     #[inline(always)]
     fn row(rows: &[[f32; 8]; 6], index: usize) -> F8 {
         row(rows, index)

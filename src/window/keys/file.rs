@@ -3,7 +3,8 @@
 //! One line for an action, `pause = "P"` or `help = ["H", "F1"]`; `[]` takes its keys away. What
 //! the file does not name keeps its key. A line that is wrong is left out and told.
 
-use super::keys::{Action, BINDINGS, Binding, Keys, keys_of};
+use super::number_pad::pad_key;
+use super::{Action, BINDINGS, Binding, Keys, keys_of};
 use crate::io::files::read_file;
 use crate::io::scene_file::suggestion;
 use egui::{Key, Modifiers};
@@ -12,13 +13,13 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// Its name in the program's own folder.
-pub(super) const NAME: &str = "keys.toml";
+pub(in crate::window) const NAME: &str = "keys.toml";
 /// A longer file is no file of keys.
 const LARGEST: u64 = 64 << 10;
 
 /// The keys that the file at `path` gives, with what is wrong in it. Without a file, the usual
 /// ones.
-pub(super) fn load(path: &Path) -> (Keys, Vec<String>) {
+pub(in crate::window) fn load(path: &Path) -> (Keys, Vec<String>) {
     if !path.exists() {
         return (Keys::default(), Vec::new());
     }
@@ -33,7 +34,7 @@ pub(super) fn load(path: &Path) -> (Keys, Vec<String>) {
 }
 
 /// A file that changes nothing: every action with its usual keys, as comments.
-pub(super) fn template() -> String {
+pub(in crate::window) fn template() -> String {
     let mut text = String::from(
         "# Keys of Penumbra. Take the # away from a line and give another key, or a list of keys;\n\
          # [] takes the key away. Modifiers: Ctrl (Cmd on macOS), Shift, Alt. Read at the start.\n\n",
@@ -177,12 +178,14 @@ fn key_of(text: &str) -> Result<(Modifiers, Key), String> {
             _ => return Err(format!("{text:?}: {part:?} is none of Ctrl, Shift and Alt")),
         }
     }
-    let key = Key::from_name(last).or_else(|| Key::from_name(&last.to_ascii_uppercase()));
+    let key = pad_key(last)
+        .or_else(|| Key::from_name(last))
+        .or_else(|| Key::from_name(&last.to_ascii_uppercase()));
     match key {
         Some(key) => Ok((modifiers, key)),
         None => Err(format!(
-            "{text:?}: there is no key {last:?}; give A to Z, 0 to 9, F1 to F35, Space, Home, Plus \
-             or another by its name"
+            "{text:?}: there is no key {last:?}; give A to Z, 0 to 9, Numpad 0 to Numpad 9, F1 to \
+             F25, Space, Home, Plus or another by its name"
         )),
     }
 }
