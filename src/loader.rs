@@ -135,7 +135,7 @@ pub enum LoadError {
 }
 
 /// Loads a file with overrides of its parameters. `is_cancelled` is looked at before every
-/// file, and every few megabytes of a mesh.
+/// file, and at every line of a mesh.
 ///
 /// # Errors
 /// See [`LoadError`]; nothing is half loaded.

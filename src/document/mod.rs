@@ -59,6 +59,11 @@ impl Document {
         self.saved = self.description.clone();
     }
 
+    /// What its file holds, as it was read or saved last.
+    pub fn saved(&self) -> &SceneDescription {
+        &self.saved
+    }
+
     /// Takes over what its file holds now, after another program changed it. Can be undone.
     pub fn reload(&mut self, description: SceneDescription) {
         self.checkpoint("edit", None);

@@ -6,9 +6,11 @@
 //! 1998), so that how a polygon was cut makes no difference.
 
 use std::f64::consts::PI;
+use std::sync::atomic::AtomicBool;
 
 use glam::{DVec3, Vec3};
 
+use crate::geometry::Stopped;
 use crate::geometry::mesh::ABSENT;
 use crate::math::portable;
 
@@ -30,6 +32,9 @@ const MAX_FACES_AT_CREASE: usize = 4096;
 /// a mesh takes more than this, its most crowded vertices are passed over.
 const MAX_COMPARISONS: u64 = 1 << 30;
 
+/// Triangles between two looks at whether the normals are still wanted.
+const BETWEEN_LOOKS: usize = 1 << 16;
+
 /// Cosine by which faces may miss the crease angle and still count as within it: the right angles
 /// of a box are rarely right to the last bit.
 const CREASE_SLACK: f64 = 1e-6;
@@ -39,31 +44,44 @@ const CANCELLED: f64 = 1e-6;
 
 /// Averages at each corner the faces around its vertex whose normals are within `crease_angle`
 /// (radians; π takes all) of its own face's. Triangles without area add nothing and have no
-/// normals of their own; where normals cancel, the corner has its face's.
-pub fn smooth(positions: &[Vec3], triangles: &[[u32; 3]], crease_angle: f64) -> Normals {
-    let faces = faces_of(positions, triangles);
+/// normals of their own; where normals cancel, the corner has its face's. `stop` is looked at all
+/// the time.
+///
+/// # Errors
+/// [`Stopped`].
+pub fn smooth(
+    positions: &[Vec3],
+    triangles: &[[u32; 3]],
+    crease_angle: f64,
+    stop: &AtomicBool,
+) -> Result<Normals, Stopped> {
+    let faces = faces_of(positions, triangles, stop)?;
     if crease_angle < PI {
-        smooth_within(positions.len(), triangles, &faces, crease_angle)
+        smooth_within(positions.len(), triangles, &faces, crease_angle, stop)
     } else {
-        smooth_all(positions.len(), triangles, &faces)
+        Ok(smooth_all(positions.len(), triangles, &faces))
     }
 }
 
 /// Fills in smooth normals where a file has stored none. `stored.ids` may be empty, or [`ABSENT`]
 /// at single corners; stored normals stay as they are.
+///
+/// # Errors
+/// As [`smooth`].
 pub fn complete(
     positions: &[Vec3],
     triangles: &[[u32; 3]],
     stored: Normals,
     crease_angle: f64,
-) -> Normals {
+    stop: &AtomicBool,
+) -> Result<Normals, Stopped> {
     if stored.ids.is_empty() {
-        return smooth(positions, triangles, crease_angle);
+        return smooth(positions, triangles, crease_angle, stop);
     }
     if !stored.ids.as_flattened().contains(&ABSENT) {
-        return stored;
+        return Ok(stored);
     }
-    let averaged = smooth(positions, triangles, crease_angle);
+    let averaged = smooth(positions, triangles, crease_angle, stop)?;
     let mut normals = stored;
     let offset = normals.normals.len() as u32;
     normals.normals.extend(averaged.normals);
@@ -81,7 +99,7 @@ pub fn complete(
             }
         }
     }
-    normals
+    Ok(normals)
 }
 
 /// A triangle as its vertices see it.
@@ -93,8 +111,17 @@ struct Face {
     angles: [f64; 3],
 }
 
-fn faces_of(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Face> {
-    triangles.iter().map(|ids| face_of(ids.map(|id| positions[id as usize]))).collect()
+fn faces_of(
+    positions: &[Vec3],
+    triangles: &[[u32; 3]],
+    stop: &AtomicBool,
+) -> Result<Vec<Face>, Stopped> {
+    let mut faces = Vec::with_capacity(triangles.len());
+    for part in triangles.chunks(BETWEEN_LOOKS) {
+        Stopped::check(stop)?;
+        faces.extend(part.iter().map(|ids| face_of(ids.map(|id| positions[id as usize]))));
+    }
+    Ok(faces)
 }
 
 fn face_of(corners: [Vec3; 3]) -> Face {
@@ -148,13 +175,15 @@ fn smooth_within(
     triangles: &[[u32; 3]],
     faces: &[Face],
     crease_angle: f64,
-) -> Normals {
+    stop: &AtomicBool,
+) -> Result<Normals, Stopped> {
     let min_cosine = portable::cos_f64(crease_angle) - CREASE_SLACK;
     let around = CornersAround::new(n_vertices, triangles);
     let max_faces = max_faces_at_crease(n_vertices, &around);
     let mut normals = Vec::with_capacity(n_vertices);
     let mut ids = vec![[ABSENT; 3]; triangles.len()];
     for vertex in 0..n_vertices {
+        Stopped::check(stop)?;
         let corners = around.vertex(vertex);
         let first = normals.len();
         for (face_id, corner) in corners.iter().map(split_corner) {
@@ -182,7 +211,7 @@ fn smooth_within(
             ids[face_id][corner] = id as u32;
         }
     }
-    Normals { normals, ids }
+    Ok(Normals { normals, ids })
 }
 
 /// Faces at a vertex, up to which creases are looked for in this mesh.

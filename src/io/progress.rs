@@ -13,7 +13,7 @@ pub enum Step {
     Tree,
 }
 
-/// Asked by those who read, every few megabytes, whether to go on; and told how far they are.
+/// Asked by those who read, all the time, whether to go on; and told how far they are.
 #[derive(Clone, Copy)]
 pub struct Watch<'a> {
     stop: &'a AtomicBool,
@@ -29,6 +29,11 @@ impl<'a> Watch<'a> {
     /// Whether the file is not wanted any more.
     pub fn is_stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
+    }
+
+    /// What is set once the file is not wanted any more.
+    pub fn stop(&self) -> &'a AtomicBool {
+        self.stop
     }
 
     /// Takes note of a step.

@@ -28,6 +28,10 @@ pub(super) struct Reading<'a> {
     pub(super) assets: Assets,
     pub(super) records: Vec<FileRecord>,
     pub(super) report: Vec<String>,
+    /// Bytes of the meshes so far.
+    n_mesh_bytes: usize,
+    /// Triangles of the meshes so far, once for each crease angle.
+    n_triangles: usize,
     /// A library or an image that a snapshot's mesh had and that is gone or changed.
     lost: Option<FileError>,
 }
@@ -47,6 +51,8 @@ impl<'a> Reading<'a> {
             assets: Assets { meshes: HashMap::new(), images: HashMap::new() },
             records: Vec::new(),
             report: Vec::new(),
+            n_mesh_bytes: 0,
+            n_triangles: 0,
             lost: None,
         }
     }
@@ -187,17 +193,20 @@ impl<'a> Reading<'a> {
         let told = |step| told(file, step);
         let watch = Watch::new(stop, &told);
         let mut parsed = obj::parse(bytes, watch)?;
+        self.n_mesh_bytes += bytes.len();
         let notes = parsed.take_notes();
         let slots = self.slots_of(file, notes);
         let mut keys = keys.into_iter().peekable();
         while let Some(key) = keys.next() {
-            if watch.is_stopped() {
-                return Err(ObjError::Cancelled);
+            self.n_triangles += parsed.triangles.len();
+            let limit = obj::most_triangles(self.n_mesh_bytes);
+            if limit < self.n_triangles {
+                return Err(ObjError::TooManyTogether { limit });
             }
             watch.tell(Step::Normals);
             let is_last = keys.peek().is_none();
             let own = if is_last { std::mem::take(&mut parsed) } else { parsed.try_clone()? };
-            let mesh = own.into_mesh(key.normals, key.crease_angle_deg());
+            let mesh = own.into_mesh(key.normals, key.crease_angle_deg(), watch)?;
             let asset = MeshAsset { traced: Arc::new(TracedMesh::new(mesh)), slots: slots.clone() };
             self.assets.meshes.insert(key, Arc::new(asset));
         }
@@ -292,6 +301,35 @@ mod tests {
             assert_eq!(mesh.triangles, alone.triangles, "{key:?}");
             let normals = (&mesh.normals, &mesh.normal_ids);
             assert_eq!(normals, (&alone.normals, &alone.normal_ids), "{key:?}");
+        }
+    }
+
+    /// A mesh of one triangle by two angles, where there is room for one more.
+    #[test]
+    fn triangles_of_a_scene_count_once_for_each_crease_angle() {
+        let folder = tempfile::tempdir().unwrap();
+        let text = "v 0 0 0\nv 0 0 1\nv 1 1 0\nf 1 2 3\n";
+        std::fs::write(folder.path().join("a.obj"), text).unwrap();
+        let mut description = crate::loader::framing::scene_around("a.obj", None);
+        description.objects = Vec::from([20.0, 40.0].map(|crease_angle| ObjectDescription {
+            file: Some("a.obj".to_owned()),
+            normals: NormalsKind::Smooth,
+            crease_angle,
+            ..ObjectDescription::new("sail", ObjectKind::Mesh)
+        }));
+        let of = Folder::of(&folder.path().join("scene.toml"));
+        let stop = AtomicBool::new(false);
+        for (n_before, fits) in [((1 << 23) - 2, true), ((1 << 23) - 1, false)] {
+            let mut reading = Reading::new(&of, &stop, &|_, _| ());
+            reading.n_triangles = n_before;
+            match reading.all_of(&description) {
+                Ok(()) => assert!(fits, "{n_before} and 2 are too many"),
+                Err(AssetFailure::Broken { message, .. }) => {
+                    assert!(!fits, "{n_before} and 2: {message}");
+                    assert!(message.starts_with("a.obj: more than 8388608 tri"), "{message}");
+                }
+                Err(AssetFailure::Cancelled) => panic!("nobody has cancelled"),
+            }
         }
     }
 }

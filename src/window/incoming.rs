@@ -225,26 +225,42 @@ impl App {
         self.work.set_assets(Arc::new(loaded.assets));
     }
 
-    /// Takes over what another program made of the open scene. A camera that was moved stays,
-    /// unless the file moved it too. One step of undo.
+    /// Takes over what another program made of the open scene, in one step of undo. A camera that
+    /// was moved stays, unless the file moved it too; and so do all edits, where only a mesh or an
+    /// image is another.
     fn take_reloaded(&mut self, loaded: Loaded) {
         self.files.loading = None;
         self.files.is_reloading = false;
         self.toasts.settle(&mut self.files.reload_fault);
-        let mut description = loaded.description;
-        let file_camera = description.camera.clone();
-        if file_camera == self.home_camera {
-            description.camera = self.document.description.camera.clone();
-        }
-        self.home_camera = file_camera;
         self.files.folder = loaded.folder;
         self.files.records = loaded.files;
         self.files.report = loaded.report;
         self.work.set_assets(Arc::new(loaded.assets));
-        self.document.reload(description);
         self.recent_pictures.forget();
         self.watch_files();
-        self.toasts.say("reloaded: the file was changed by another program");
+        let mut description = loaded.description;
+        let file_camera = description.camera.clone();
+        let saved = self.document.saved();
+        let has_camera_moved = file_camera != self.home_camera && file_camera != saved.camera;
+        if !has_camera_moved {
+            description.camera = saved.camera.clone();
+        }
+        if description == *saved {
+            self.toasts.say("reloaded: another program changed a file of the scene");
+            return;
+        }
+        if !has_camera_moved {
+            description.camera = self.document.description.camera.clone();
+        }
+        let had_edits = self.document.is_dirty();
+        self.home_camera = file_camera;
+        self.document.reload(description);
+        if had_edits {
+            self.toasts
+                .warn("reloaded: another program changed the scene; undo brings your edits back");
+        } else {
+            self.toasts.say("reloaded: another program changed the scene");
+        }
     }
 
     /// Loads the open scene again where another program changed one of its files.

@@ -8,6 +8,28 @@ use proptest::test_runner::RngSeed;
 
 use super::*;
 
+fn smooth(positions: &[Vec3], triangles: &[[u32; 3]], crease_angle: f64) -> Normals {
+    super::smooth(positions, triangles, crease_angle, &AtomicBool::new(false)).unwrap()
+}
+
+fn complete(
+    positions: &[Vec3],
+    triangles: &[[u32; 3]],
+    stored: Normals,
+    crease_angle: f64,
+) -> Normals {
+    super::complete(positions, triangles, stored, crease_angle, &AtomicBool::new(false)).unwrap()
+}
+
+#[test]
+fn normals_that_nobody_wants_are_not_made() {
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    for crease in [1.0, PI] {
+        let stopped = super::smooth(&positions, &[[0, 1, 2]], crease, &AtomicBool::new(true));
+        assert_eq!(stopped, Err(Stopped), "up to {crease}");
+    }
+}
+
 const CUBE: [[u32; 4]; 6] =
     [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
 

@@ -46,6 +46,7 @@ pub(super) fn build(mesh: &Mesh, stop: &AtomicBool) -> Result<(Subtree, u32), St
     let n_triangles = mesh.triangles.len() as u32;
     let item = |id: u32| Item { bounds: Aabb::of(mesh.corners(id)), id };
     let mut items: Vec<Item> = (0..n_triangles).map(item).collect();
+    Stopped::check(stop)?;
     let mut tree = Subtree::default();
     let bounds = bounds_of(&items);
     let source = Source { mesh, stop };
@@ -165,16 +166,24 @@ fn append(tree: &mut Subtree, mut part: Subtree, root: u32) -> u32 {
 
 /// Two ranges from one of more than a block.
 fn split<'a>(range: Range<'a>, depth: u32) -> (Range<'a>, Range<'a>) {
-    let cut = if depth < SAH_DEPTH { best_cut(&range) } else { None };
+    let centers = range.items.iter().fold(Aabb::EMPTY, |mut all, item| {
+        all.grow(item.center2());
+        all
+    });
+    let cut = if depth < SAH_DEPTH { best_cut(&range, &centers) } else { None };
     let middle = match cut {
         Some(cut) => partition(range.items, &cut),
         None => {
-            let middle = range.items.len() / 2;
+            // Whole blocks, but for the last.
+            let middle = (range.items.len() / 2).next_multiple_of(BLOCK);
             let axis = longest_axis(&range.bounds);
-            range.items.select_nth_unstable_by(middle, |a, b| {
-                let order = a.center2()[axis].total_cmp(&b.center2()[axis]);
-                order.then(a.id.cmp(&b.id))
-            });
+            // Of equal ones, any half will do.
+            if centers.extent()[axis] > 0.0 {
+                range.items.select_nth_unstable_by(middle, |a, b| {
+                    let order = a.center2()[axis].total_cmp(&b.center2()[axis]);
+                    order.then(a.id.cmp(&b.id))
+                });
+            }
             middle
         }
     };
@@ -208,13 +217,15 @@ impl Cut {
     }
 }
 
-fn best_cut(range: &Range<'_>) -> Option<Cut> {
-    let centers = range.items.iter().fold(Aabb::EMPTY, |mut all, item| {
-        all.grow(item.center2());
-        all
-    });
+/// The cut of least cost; none where the centres are one.
+fn best_cut(range: &Range<'_>, centers: &Aabb) -> Option<Cut> {
     let extent = centers.extent();
     let scale = Vec3::splat(N_BINS as f32) / extent;
+    // Not flat along that axis, nor so small that its reciprocal overflows.
+    let has_bins = |axis: usize| extent[axis] > 0.0 && scale[axis].is_finite();
+    if !(0..3).any(has_bins) {
+        return None;
+    }
     let mut bins = [[(Aabb::EMPTY, 0_usize); N_BINS]; 3];
     for item in range.items.iter() {
         let center = item.center2();
@@ -227,8 +238,7 @@ fn best_cut(range: &Range<'_>) -> Option<Cut> {
     }
     let mut best: Option<(f32, Cut)> = None;
     for axis in 0..3 {
-        // Flat along this axis, or so small that its reciprocal overflows.
-        if !(extent[axis] > 0.0 && scale[axis].is_finite()) {
+        if !has_bins(axis) {
             continue;
         }
         let cost = |area: f32, n: usize| area * n.div_ceil(BLOCK) as f32;

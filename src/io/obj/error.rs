@@ -106,6 +106,16 @@ pub enum ObjError {
         limit: usize,
     },
 
+    /// More triangles than meshes of that length have, all meshes of a scene together.
+    #[error(
+        "more than {limit} triangles in the meshes up to this one, once for each crease angle; \
+         that many are not supported in files of their length"
+    )]
+    TooManyTogether {
+        /// The limit.
+        limit: usize,
+    },
+
     /// Faces that would take minutes to cut into triangles.
     #[error(
         "line {line}: the faces up to here are too intricate to be cut into triangles; save the \

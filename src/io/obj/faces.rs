@@ -2,8 +2,8 @@
 
 use super::ObjError;
 use super::cursor::Cursor;
-use super::polygon::{MAX_CONCAVE_CORNERS, Uncut};
-use super::reader::Reader;
+use super::polygon::Uncut;
+use super::reader::{MAX_MATERIALS, Reader};
 use crate::geometry::mesh::ABSENT;
 use crate::io::excerpt;
 
@@ -23,6 +23,8 @@ impl Reader<'_> {
             if self.cursor.at_end_of_line() {
                 break;
             }
+            // A face may be the whole file.
+            self.check_wanted()?;
             let corner = self.read_corner()?;
             self.corners.push(corner);
         }
@@ -30,8 +32,8 @@ impl Reader<'_> {
         if n_corners < 3 {
             return Err(self.wrong_count("f", format!("{n_corners} corners"), "3 or more"));
         }
-        self.check_room("triangles", self.file.triangles.len() + n_corners)?;
-        self.choose_slot(n_corners - 2);
+        self.check_triangles(n_corners - 2)?;
+        self.choose_slot(n_corners - 2)?;
         self.file.n_faces += 1;
         if n_corners == 3 {
             self.push_triangle([0, 1, 2]);
@@ -87,8 +89,11 @@ impl Reader<'_> {
     }
 
     /// Prepares the slots for so many triangles of the material in use.
-    fn choose_slot(&mut self, n_triangles: usize) {
-        let slot = self.slot.unwrap_or_else(|| self.add_slot());
+    fn choose_slot(&mut self, n_triangles: usize) -> Result<(), ObjError> {
+        let slot = match self.slot {
+            Some(slot) => slot,
+            None => self.add_slot()?,
+        };
         self.slot = Some(slot);
         let file = &mut self.file;
         if slot != 0 && file.slots.is_empty() {
@@ -97,20 +102,22 @@ impl Reader<'_> {
         if !file.slots.is_empty() {
             file.slots.resize(file.slots.len() + n_triangles, slot);
         }
+        Ok(())
     }
 
-    fn add_slot(&mut self) -> u32 {
+    fn add_slot(&mut self) -> Result<u32, ObjError> {
+        self.check_count("materials", self.file.slot_names.len(), MAX_MATERIALS)?;
         let slot = self.file.slot_names.len() as u32;
         let name = self.material.map(|name| String::from_utf8_lossy(name).into_owned());
         self.file.slot_names.push(name);
         self.slot_of_name.insert(self.material, slot);
-        slot
+        Ok(slot)
     }
 
     fn push_polygon(&mut self) -> Result<(), ObjError> {
         let mut cutter = std::mem::take(&mut self.cutter);
         let points = self.corners.iter().map(|c| self.file.positions[c.position as usize]);
-        let cut = cutter.cut(points);
+        let cut = cutter.cut(points, self.watch);
         if cut.is_ok() {
             for triangle in cutter.triangles() {
                 self.push_triangle(*triangle);
@@ -119,11 +126,8 @@ impl Reader<'_> {
         self.cutter = cutter;
         let line = self.cursor.line();
         cut.map_err(|reason| match reason {
-            Uncut::TooLarge => {
-                let what = "corners in a face that is not convex";
-                ObjError::TooMany { line, what, limit: MAX_CONCAVE_CORNERS }
-            }
             Uncut::TooIntricate => ObjError::TooIntricate { line },
+            Uncut::Cancelled => ObjError::Cancelled,
         })
     }
 

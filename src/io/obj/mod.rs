@@ -19,12 +19,13 @@ mod tests;
 use glam::{Vec2, Vec3};
 
 use crate::geometry::mesh::Mesh;
-use crate::geometry::normals;
+use crate::geometry::{Stopped, normals};
 use crate::io::memory;
 use crate::io::progress::{Step, Watch};
 use crate::scene::description::NormalsKind;
 pub use error::ObjError;
 use reader::Reader;
+pub use reader::most_triangles;
 
 /// Bytes a triangle that computing shading normals takes.
 const NORMALS_A_TRIANGLE: usize = 80;
@@ -70,7 +71,8 @@ pub struct MeshNotes {
 }
 
 /// Reads a whole mesh and gives it shading normals. `crease_angle_deg` is a scene's
-/// `crease_angle`: 0..=180. `watch` is asked, and told how far it is, every few megabytes.
+/// `crease_angle`: 0..=180. `watch` is asked at every line, and told how far it is every few
+/// megabytes.
 ///
 /// # Errors
 /// When it is no mesh, does not fit into memory, or is not wanted any more.
@@ -84,7 +86,7 @@ pub fn load_mesh<'a>(
     let mut file = parse(bytes, watch)?;
     let notes = file.take_notes();
     watch.tell(Step::Normals);
-    Ok((file.into_mesh(kind, crease_angle_deg), notes))
+    Ok((file.into_mesh(kind, crease_angle_deg, watch)?, notes))
 }
 
 /// Reads the text of an OBJ file.
@@ -107,19 +109,32 @@ impl ObjFile {
     }
 
     /// Its mesh with shading normals; `crease_angle_deg` as in [`load_mesh`].
-    pub fn into_mesh(self, kind: NormalsKind, crease_angle_deg: f64) -> Mesh {
+    ///
+    /// # Errors
+    /// When it is not wanted any more.
+    pub fn into_mesh<'a>(
+        self,
+        kind: NormalsKind,
+        crease_angle_deg: f64,
+        watch: impl Into<Watch<'a>>,
+    ) -> Result<Mesh, ObjError> {
         let crease_angle = crease_angle_deg.to_radians();
+        let stop = watch.into().stop();
         let normals = match kind {
-            NormalsKind::Flat => normals::Normals::default(),
-            NormalsKind::Smooth => normals::smooth(&self.positions, &self.triangles, crease_angle),
+            NormalsKind::Flat => Ok(normals::Normals::default()),
+            NormalsKind::Smooth => {
+                normals::smooth(&self.positions, &self.triangles, crease_angle, stop)
+            }
             NormalsKind::File => normals::complete(
                 &self.positions,
                 &self.triangles,
                 normals::Normals { normals: self.normals, ids: self.normal_ids },
                 crease_angle,
+                stop,
             ),
         };
-        Mesh {
+        let normals = normals.map_err(|Stopped| ObjError::Cancelled)?;
+        Ok(Mesh {
             positions: self.positions,
             triangles: self.triangles,
             normals: normals.normals,
@@ -127,7 +142,7 @@ impl ObjFile {
             uvs: self.uvs,
             uv_ids: self.uv_ids,
             slots: self.slots,
-        }
+        })
     }
 
     /// A copy, for other shading normals of the same mesh.

@@ -3,15 +3,20 @@
 //! A polygon of n corners always becomes n - 2 triangles, however degenerate, with the polygon's
 //! own turning sense. It is looked at along its mean normal, in `f64`.
 
+mod grid;
+
 use glam::{DVec2, DVec3, Vec3};
 use std::collections::VecDeque;
 
-/// Corners of a polygon that is not convex: ears of larger ones would take minutes to find.
-pub(super) const MAX_CONCAVE_CORNERS: usize = 100_000;
+use crate::io::progress::Watch;
+use grid::{Entry, Grid};
 
 /// Corners that are looked at in search of ears, in a whole file: some seconds of it. What anybody
-/// drew takes a few a corner; only long teeth beside one another take their square.
-const MAX_LOOKS: u64 = 1 << 30;
+/// drew takes a few a corner; only long teeth across one another take their square.
+const MAX_LOOKS: u64 = 1 << 28;
+
+/// Looks a corner that is left, after which the grid is made anew without those that are cut.
+const LOOKS_A_FILL: u64 = 4;
 
 /// Sine of the angle by which a corner of a convex polygon may turn back: room for the rounding
 /// of corners that lie on a straight line.
@@ -30,9 +35,18 @@ pub(super) struct PolygonCutter {
     previous: Vec<u32>,
     next: Vec<u32>,
     is_cut: Vec<bool>,
-    /// Corners that point inwards or are straight, by ascending x: only they can lie in an ear.
-    inward: Vec<u32>,
+    /// Corners that point inwards or are straight: only they can lie in an ear.
+    inward: Vec<Entry>,
+    /// The same, by place.
+    grid: Grid,
+    /// How many looks there may be until the grid is made anew.
+    next_fill: u64,
+    /// Corners to try.
     queue: VecDeque<u32>,
+    /// How many were ever put into the queue.
+    n_queued: u32,
+    /// What `n_queued` was when each corner was put there last.
+    queued_as: Vec<u32>,
     /// Corners looked at so far, in all polygons.
     n_looks: u64,
 }
@@ -40,10 +54,10 @@ pub(super) struct PolygonCutter {
 /// Why a polygon was not cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Uncut {
-    /// It has more than [`MAX_CONCAVE_CORNERS`], and is not convex.
-    TooLarge,
     /// It, or those before it, take too long.
     TooIntricate,
+    /// Nobody wants it any more.
+    Cancelled,
 }
 
 impl PolygonCutter {
@@ -53,7 +67,11 @@ impl PolygonCutter {
     }
 
     /// Cuts a polygon of three corners or more.
-    pub(super) fn cut(&mut self, points: impl Iterator<Item = Vec3>) -> Result<(), Uncut> {
+    pub(super) fn cut(
+        &mut self,
+        points: impl Iterator<Item = Vec3>,
+        watch: Watch<'_>,
+    ) -> Result<(), Uncut> {
         self.points.clear();
         self.points.extend(points);
         self.triangles.clear();
@@ -62,10 +80,7 @@ impl PolygonCutter {
             self.cut_fan();
             return Ok(());
         }
-        if MAX_CONCAVE_CORNERS < self.points.len() {
-            return Err(Uncut::TooLarge);
-        }
-        self.cut_ears()
+        self.cut_ears(watch)
     }
 
     /// Projects the polygon along the largest part of its mean normal, so that it turns
@@ -112,8 +127,9 @@ impl PolygonCutter {
 
     /// Cuts ears off until a triangle is left (G. Meisters, "Polygons Have Ears", American
     /// Mathematical Monthly 82(6), 1975). Only the neighbours of a corner that was cut can become
-    /// ears by it, so that each corner is tried a few times in all.
-    fn cut_ears(&mut self) -> Result<(), Uncut> {
+    /// ears by it, so that each corner is tried a few times in all. They wait until all others
+    /// have been tried: so ears stay small, and do not gather about one corner.
+    fn cut_ears(&mut self, watch: Watch<'_>) -> Result<(), Uncut> {
         self.start_ring();
         let n = self.flat.len();
         let mut n_rounds = 0;
@@ -121,19 +137,47 @@ impl PolygonCutter {
             if MAX_LOOKS < self.n_looks {
                 return Err(Uncut::TooIntricate);
             }
-            if let Some(corner) = self.queue.pop_front() {
-                if !self.is_cut[corner as usize] && self.is_ear(corner) {
+            if watch.is_stopped() {
+                return Err(Uncut::Cancelled);
+            }
+            if let Some(corner) = self.next_in_queue() {
+                if self.is_ear(corner) {
                     self.cut_off(corner);
                 }
             } else if n_rounds < MAX_ROUNDS {
                 n_rounds += 1;
-                self.queue.extend((0..n as u32).filter(|i| !self.is_cut[*i as usize]));
+                self.queue_all();
             } else {
                 // The outline crosses itself: no cut is right, and any keeps the count.
                 self.cut_rest();
             }
         }
         Ok(())
+    }
+
+    fn queue_all(&mut self) {
+        for corner in 0..self.is_cut.len() as u32 {
+            if !self.is_cut[corner as usize] {
+                self.put_in_queue(corner);
+            }
+        }
+    }
+
+    fn put_in_queue(&mut self, corner: u32) {
+        self.queued_as[corner as usize] = self.n_queued;
+        self.n_queued = self.n_queued.wrapping_add(1);
+        self.queue.push_back(corner);
+    }
+
+    /// The next corner to try. Those that are cut, or are further behind once more, are left out.
+    fn next_in_queue(&mut self) -> Option<u32> {
+        loop {
+            let place = self.n_queued.wrapping_sub(self.queue.len() as u32);
+            let corner = self.queue.pop_front()?;
+            if !self.is_cut[corner as usize] && self.queued_as[corner as usize] == place {
+                return Some(corner);
+            }
+        }
     }
 
     fn start_ring(&mut self) {
@@ -145,11 +189,40 @@ impl PolygonCutter {
         self.is_cut.clear();
         self.is_cut.resize(n as usize, false);
         self.queue.clear();
+        self.queued_as.clear();
+        self.queued_as.resize(n as usize, 0);
+        self.inward.clear();
+        for corner in 0..n {
+            if self.turn(corner) <= 0.0 {
+                self.inward.push(Entry { corner, point: self.flat[corner as usize] });
+            }
+        }
+        self.fill_grid(0);
+    }
+
+    /// Leaves out the corners that are cut, or point outwards now.
+    fn renew_grid(&mut self, corner: u32) {
         let mut inward = std::mem::take(&mut self.inward);
-        inward.clear();
-        inward.extend((0..n).filter(|i| self.turn(*i) <= 0.0));
-        inward.sort_by(|a, b| self.flat[*a as usize].x.total_cmp(&self.flat[*b as usize].x));
+        inward.retain(|entry| self.is_inward(entry.corner));
         self.inward = inward;
+        self.fill_grid(corner);
+    }
+
+    /// Makes the grid, about some corner that is left.
+    fn fill_grid(&mut self, corner: u32) {
+        let n_left = self.flat.len() - self.triangles.len();
+        let (mut edges, mut corner) = (DVec2::ZERO, corner as usize);
+        for _ in 0..n_left {
+            let next = self.next[corner] as usize;
+            edges += (self.flat[next] - self.flat[corner]).abs();
+            corner = next;
+        }
+        self.grid.fill(&self.inward, edges);
+        self.next_fill = self.n_looks + LOOKS_A_FILL * n_left as u64;
+    }
+
+    fn is_inward(&self, corner: u32) -> bool {
+        !self.is_cut[corner as usize] && self.turn(corner) <= 0.0
     }
 
     /// The triangle that a corner makes with its neighbours in what is left.
@@ -170,23 +243,26 @@ impl PolygonCutter {
         }
         let ids = self.triangle_at(corner);
         let [a, b, c] = ids.map(|i| self.flat[i as usize]);
-        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        let x = |i: &u32| self.flat[*i as usize].x;
-        let start = self.inward.partition_point(|i| x(i) < low.x);
-        let end = self.inward.partition_point(|i| x(i) <= high.x);
-        let near = &self.inward[start..end];
-        let blocking = near.iter().position(|other| {
-            let p = self.flat[*other as usize];
-            // Corners that a bridge to a hole visits twice do not block each other.
-            !self.is_cut[*other as usize]
-                && ![a, b, c].contains(&p)
-                && (b - a).perp_dot(p - a) >= 0.0
+        let blocks = |entry: &Entry| {
+            let p = entry.point;
+            (b - a).perp_dot(p - a) >= 0.0
                 && (c - b).perp_dot(p - b) >= 0.0
                 && (a - c).perp_dot(p - c) >= 0.0
-                && self.turn(*other) <= 0.0
+                // Corners that a bridge to a hole visits twice do not block each other.
+                && ![a, b, c].contains(&p)
+                && self.is_inward(entry.corner)
+        };
+        let mut n_looks = 0;
+        let is_clean = self.grid.near([a, b, c]).all(|row| {
+            let blocking = row.iter().position(blocks);
+            n_looks += 1 + blocking.unwrap_or(row.len()) as u64;
+            blocking.is_none()
         });
-        self.n_looks += blocking.unwrap_or(near.len()) as u64;
-        blocking.is_none()
+        self.n_looks += n_looks;
+        if self.next_fill < self.n_looks {
+            self.renew_grid(corner);
+        }
+        is_clean
     }
 
     fn cut_off(&mut self, corner: u32) {
@@ -196,8 +272,8 @@ impl PolygonCutter {
         self.is_cut[corner as usize] = true;
         self.next[before as usize] = after;
         self.previous[after as usize] = before;
-        self.queue.push_back(before);
-        self.queue.push_back(after);
+        self.put_in_queue(before);
+        self.put_in_queue(after);
     }
 
     /// Cuts what is left into a fan.

@@ -14,22 +14,40 @@ use crate::io::{excerpt, memory};
 /// Entries that any array of a mesh may have: indices stay far from `ABSENT`.
 const MAX_ENTRIES: usize = 1 << 30;
 
+/// Triangles that a file of any length may have.
+const ALWAYS_TRIANGLES: usize = 1 << 23;
+
+/// Beyond those, a file has one for so many of its bytes. A mesh of that size takes 14 of them and
+/// more: its faces have seven digits a corner. Only polygons that use the same corners again and
+/// again take fewer, and seconds and gigabytes for a small file.
+const BYTES_A_TRIANGLE: usize = 8;
+
 /// Material libraries that are looked for; more are a mistake of the exporter.
 const MAX_LIBRARIES: usize = 100;
 
 /// Largest coordinate: what a tracer multiplies in `f32` stays finite.
 const MAX_COORDINATE: f32 = 1e12;
 
-/// Bytes of the file between two looks at what else goes on.
+/// Names of materials that faces have.
+pub(super) const MAX_MATERIALS: usize = 1 << 20;
+
+/// Bytes of the file between two looks at the memory.
 const BETWEEN_LOOKS: usize = 4 << 20;
+
+/// Triangles that files of so many bytes may have, one file or all of a scene.
+pub fn most_triangles(n_bytes: usize) -> usize {
+    ALWAYS_TRIANGLES.max(n_bytes / BYTES_A_TRIANGLE)
+}
 
 /// A file half read.
 pub(super) struct Reader<'a> {
     pub(super) cursor: Cursor<'a>,
     pub(super) file: ObjFile,
+    /// Triangles that it may have.
+    pub(super) max_triangles: usize,
     /// Who waits for the mesh.
-    watch: Watch<'a>,
-    /// Where in the file it and the memory are looked at next.
+    pub(super) watch: Watch<'a>,
+    /// Where in the file it is told next how far it is, and the memory is looked at.
     next_look: usize,
     /// Slots by the name that faces have.
     pub(super) slot_of_name: HashMap<Option<&'a [u8]>, u32>,
@@ -54,6 +72,7 @@ impl<'a> Reader<'a> {
         Self {
             watch,
             next_look: BETWEEN_LOOKS,
+            max_triangles: most_triangles(bytes.len()).min(MAX_ENTRIES),
             cursor: Cursor::new(bytes),
             file: ObjFile::default(),
             slot_of_name: HashMap::new(),
@@ -70,6 +89,7 @@ impl<'a> Reader<'a> {
 
     pub(super) fn read(mut self) -> Result<ObjFile, ObjError> {
         while !self.cursor.at_end_of_file() {
+            self.check_wanted()?;
             self.read_line()?;
             if self.next_look <= self.cursor.place() {
                 self.look()?;
@@ -78,14 +98,16 @@ impl<'a> Reader<'a> {
         self.finish()
     }
 
-    /// Stops where the mesh is not wanted any more, or where it and what is made of it would not
-    /// fit into memory.
+    /// Stops where the mesh is not wanted any more.
+    #[inline]
+    pub(super) fn check_wanted(&self) -> Result<(), ObjError> {
+        if self.watch.is_stopped() { Err(ObjError::Cancelled) } else { Ok(()) }
+    }
+
+    /// Stops where the mesh and what is made of it would not fit into memory.
     #[cold]
     fn look(&mut self) -> Result<(), ObjError> {
         self.next_look = self.cursor.place() + BETWEEN_LOOKS;
-        if self.watch.is_stopped() {
-            return Err(ObjError::Cancelled);
-        }
         self.watch.tell(Step::Reading(self.cursor.share()));
         let line = self.cursor.line();
         memory::check(self.file.bytes_to_come()).map_err(|error| ObjError::NoMemory { line, error })
@@ -238,11 +260,28 @@ impl<'a> Reader<'a> {
 
     #[inline]
     pub(super) fn check_room(&self, what: &'static str, n: usize) -> Result<(), ObjError> {
-        if MAX_ENTRIES <= n {
-            let line = self.cursor.line();
-            return Err(ObjError::TooMany { line, what, limit: MAX_ENTRIES });
+        self.check_count(what, n, MAX_ENTRIES)
+    }
+
+    /// Refuses the entry after the first `n` where there may be `limit`.
+    #[inline]
+    pub(super) fn check_count(
+        &self,
+        what: &'static str,
+        n: usize,
+        limit: usize,
+    ) -> Result<(), ObjError> {
+        if limit <= n {
+            return Err(ObjError::TooMany { line: self.cursor.line(), what, limit });
         }
         Ok(())
+    }
+
+    /// Refuses more triangles than a file of its length has.
+    #[inline]
+    pub(super) fn check_triangles(&self, n_more: usize) -> Result<(), ObjError> {
+        let what = "triangles in a file of its length";
+        self.check_count(what, self.file.triangles.len() + n_more - 1, self.max_triangles)
     }
 
     #[cold]

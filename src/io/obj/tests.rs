@@ -7,6 +7,7 @@ use proptest::test_runner::RngSeed;
 use std::cell::RefCell;
 use std::sync::atomic::AtomicBool;
 
+use super::reader::MAX_MATERIALS;
 use super::*;
 use crate::geometry::mesh::ABSENT;
 
@@ -220,7 +221,7 @@ fn long_tokens_are_shortened_in_messages() {
 fn concave_polygons_are_cut_by_ears() {
     let text = "v 1 1 0\nv 0 4 0\nv 0 0 0\nv 4 0 0\nf 2 3 4 1\nf 1 2 3 4\n";
     // The notch is the first vertex: the cut goes from there, wherever the face begins.
-    assert_eq!(read(text).triangles, [[0, 1, 2], [0, 2, 3], [0, 1, 2], [0, 2, 3]]);
+    assert_eq!(read(text).triangles, [[0, 1, 2], [2, 3, 0], [0, 1, 2], [2, 3, 0]]);
 }
 
 #[test]
@@ -396,11 +397,43 @@ proptest! {
 }
 
 #[test]
-fn a_large_file_is_given_up_when_nobody_wants_it() {
-    let bytes = [TRIANGLE.as_bytes(), &vec![b'\n'; 5 << 20]].concat();
-    assert!(parse(&bytes).is_ok(), "the file is a mesh");
-    let stopped = super::parse(&bytes, &AtomicBool::new(true));
+fn a_file_is_given_up_at_once_when_nobody_wants_it() {
+    let stopped = super::parse(TRIANGLE.as_bytes(), &AtomicBool::new(true));
     assert_eq!(stopped, Err(ObjError::Cancelled), "it was read to its end");
+    let read = read(TRIANGLE).into_mesh(NormalsKind::Smooth, 40.0, &AtomicBool::new(true));
+    assert_eq!(read.unwrap_err(), ObjError::Cancelled, "it got its normals");
+}
+
+/// The square is named again and again: nine million triangles by two bytes each.
+#[test]
+fn small_files_of_very_many_triangles_are_refused() {
+    let face = |n: usize| format!("f{}\n", " 1 2 3 4".repeat(n));
+    let corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+    let parse_at_most = |max_triangles, text: &str| {
+        let stop = AtomicBool::new(false);
+        let mut reader = Reader::new(text.as_bytes(), (&stop).into());
+        reader.max_triangles = max_triangles;
+        reader.read()
+    };
+    let text = format!("{corners}{}{}", face(1), face(3));
+    assert_eq!(parse_at_most(12, &text).unwrap().triangles.len(), 12, "2 and 10");
+    let refused = parse_at_most(11, &text).unwrap_err().to_string();
+    let words = "line 6: more than 11 triangles in a file of its length; a mesh of that size is \
+                 not supported";
+    assert_eq!(refused, words);
+    assert_eq!(most_triangles(40_000_000), 1 << 23, "the least");
+    assert_eq!(most_triangles(391_000_000), 48_875_000, "where a grid of 10 million is a file");
+}
+
+#[test]
+fn more_materials_than_anybody_has_are_refused() {
+    let faces: String = (0..=MAX_MATERIALS).map(|i| format!("usemtl {i}\nf 1 1 1\n")).collect();
+    let refused = parse(format!("v 0 0 0\n{faces}").as_bytes()).unwrap_err().to_string();
+    let line = 2 * MAX_MATERIALS + 3;
+    assert!(
+        refused.starts_with(&format!("line {line}: more than 1048576 materials;")),
+        "{refused}"
+    );
 }
 
 #[test]

@@ -77,6 +77,44 @@ fn a_changed_mesh_and_a_changed_image_come_by_themselves() {
     assert!(app.swatches.ball_is_of(&app.work.assets), "the ball shows the old image");
 }
 
+#[test]
+fn edits_stay_where_only_a_mesh_is_new() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&scene_with_files(folder.path()), SIZE);
+    harness.key_press(Key::E);
+    harness.run_steps(3);
+    let edited = harness.state().document.description.clone();
+    std::fs::write(folder.path().join("a.obj"), format!("{TRIANGLE}v 0 0 1\nf 1 2 4\n")).unwrap();
+    wait_until(&mut harness, |app| {
+        let meshes = app.work.assets.meshes.values();
+        meshes.map(|mesh| mesh.traced.mesh.triangles.len()).sum::<usize>() == 2
+    });
+    harness.run_steps(3);
+    let document = &harness.state().document;
+    assert_eq!(document.description, edited, "the edit is gone");
+    assert!(document.is_dirty(), "the edit counts as saved");
+}
+
+#[test]
+fn edits_that_a_changed_scene_replaces_are_one_undo_away_and_it_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene_file(folder.path());
+    let mut harness = window(&path, SIZE);
+    let text = std::fs::read_to_string(&path).unwrap();
+    harness.key_press(Key::E);
+    harness.run_steps(3);
+    let edited = harness.state().document.description.clone();
+    std::fs::write(&path, text.replace("power = [100.0", "power = [7.0")).unwrap();
+    wait_until(&mut harness, |app| app.document.description.lights[0].power[0] == 7.0);
+    harness.run_steps(3);
+    assert_eq!(harness.state().document.description.tone_mapping.exposure, 0.0, "half and half");
+    assert!(has_said(&harness, "undo brings your edits back"), "it is not told");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(3);
+    assert_eq!(harness.state().document.description, edited, "undo does not bring them back");
+    assert!(harness.state().document.is_dirty(), "they count as saved");
+}
+
 /// Twice in a row: what is restored is kept again, and can be restored again.
 #[test]
 fn a_restored_scene_is_kept_again_and_finds_its_files() {

@@ -1,14 +1,24 @@
 //! Outlines of every kind: the pieces tile the whole.
 
+use std::sync::atomic::AtomicBool;
+
 use glam::vec3;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use super::*;
 
+/// Cuts for somebody who waits as long as it takes.
+fn try_cut(
+    cutter: &mut PolygonCutter,
+    points: impl IntoIterator<Item = Vec3>,
+) -> Result<(), Uncut> {
+    cutter.cut(points.into_iter(), (&AtomicBool::new(false)).into())
+}
+
 fn cut(points: &[Vec3]) -> Vec<[u32; 3]> {
     let mut cutter = PolygonCutter::default();
-    assert_eq!(cutter.cut(points.iter().copied()), Ok(()));
+    assert_eq!(try_cut(&mut cutter, points.iter().copied()), Ok(()));
     cutter.triangles().to_vec()
 }
 
@@ -109,28 +119,50 @@ fn a_large_concave_outline_takes_no_time() {
     assert_eq!(cut(&in_plane(&outline)).len(), n - 2);
 }
 
+/// A comb of long teeth, a spiral and a walk that crosses itself, each of 200,000 corners.
 #[test]
-fn too_large_a_concave_outline_is_refused() {
-    let zigzag = |i: usize| vec3(i as f32, (i % 2) as f32, 0.0);
-    let n = MAX_CONCAVE_CORNERS + 1;
-    let points = (0..n).map(zigzag).chain([vec3(n as f32, -9.0, 0.0)]);
-    assert_eq!(PolygonCutter::default().cut(points), Err(Uncut::TooLarge));
+fn large_outlines_of_every_kind_are_cut() {
+    let n = 200_000;
+    let comb = |i: usize| [i as f32, if i.is_multiple_of(2) { 0.0 } else { 1e6 }];
+    let comb = (0..n).map(comb).chain([[n as f32, -9.0], [0.0, -9.0]]);
+    let spiral = (0..n).map(|i| {
+        let (turn, radius) = if i < n / 2 { (i, 1.0) } else { (n - 1 - i, 1.5) };
+        let (s, c) = (0.05 * turn as f64).sin_cos();
+        [s, c].map(|x| ((radius + 0.05 * turn as f64) * x) as f32)
+    });
+    let mut at = [0.0; 2];
+    let mut numbers = (0_u32..).map(|i| i.wrapping_mul(2_654_435_769).rotate_left(13) as i32);
+    let walk = (0..n).map(|_| {
+        at = at.map(|x: f32| x + numbers.next().unwrap() as f32 / 1e9);
+        at
+    });
+    let outlines: [Vec<[f32; 2]>; 3] = [comb.collect(), spiral.collect(), walk.collect()];
+    for outline in outlines {
+        let mut cutter = PolygonCutter::default();
+        assert_eq!(try_cut(&mut cutter, in_plane(&outline)), Ok(()));
+        assert_eq!(cutter.triangles().len(), outline.len() - 2);
+        let n_looks = cutter.n_looks as f64 / outline.len() as f64;
+        assert!(n_looks < 1000.0, "{n_looks} looks a corner");
+    }
 }
 
-/// Teeth beside one another: every tip is looked at for every other.
+/// Needles across one another: every tip is looked at for every other.
 #[test]
 fn what_a_file_takes_to_cut_is_limited() {
     let tooth = |i: u16| vec3(if i.is_multiple_of(2) { 0.0 } else { 9.0 }, f32::from(i), 0.0);
     let back = [vec3(-1.0, 1000.0, 0.0), vec3(-1.0, -1.0, 0.0)];
     let comb: Vec<Vec3> = (0..1000).map(tooth).chain(back).collect();
     let mut cutter = PolygonCutter::default();
-    assert_eq!(cutter.cut(comb.iter().copied()), Ok(()));
+    assert_eq!(try_cut(&mut cutter, comb.iter().copied()), Ok(()));
     let n_looks = cutter.n_looks;
-    assert!((100_000..10_000_000).contains(&n_looks), "{n_looks} looks at a comb");
+    assert!((1_000..1_000_000).contains(&n_looks), "{n_looks} looks at a comb");
     cutter.n_looks = MAX_LOOKS - n_looks / 2;
-    assert_eq!(cutter.cut(comb.iter().copied()), Err(Uncut::TooIntricate));
+    assert_eq!(try_cut(&mut cutter, comb.iter().copied()), Err(Uncut::TooIntricate));
     let square = in_plane(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
-    assert_eq!(cutter.cut(square.into_iter()), Ok(()), "a convex one takes no looks");
+    assert_eq!(try_cut(&mut cutter, square), Ok(()), "a convex one takes no looks");
+    cutter.n_looks = 0;
+    let stopped = cutter.cut(comb.into_iter(), (&AtomicBool::new(true)).into());
+    assert_eq!(stopped, Err(Uncut::Cancelled), "nobody waits");
 }
 
 proptest! {
