@@ -112,7 +112,7 @@ mod tests {
                 of_area,
             ),
             (Emitter::Sun { towards: Vec3::Y, irradiance: color }, 0.0, 1.0),
-            (Emitter::sun(Vec3::Y, f64::from(cap), color), cap.sin(), 1.0),
+            (Emitter::sun(Vec3::Y, f64::from(cap), color), libm::sinf(cap), 1.0),
         ] {
             let found = Light { visible: true, emitter }.estimate(from).unwrap();
             let near =
