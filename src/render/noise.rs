@@ -36,7 +36,7 @@ pub struct Noise {
 impl Noise {
     /// How many times the samples so far it takes to come down to `percent`.
     pub fn samples_to(&self, percent: f64) -> f64 {
-        self.course.samples_to((percent / self.percent).powi(2))
+        self.course.samples_to((self.percent / percent).powi(-2))
     }
 
     /// The figure with so many times the samples so far.
