@@ -15,11 +15,8 @@ use crate::{Failure, KINDS, Kind, Options, job, luminances};
 
 /// Fewer samples tell too little.
 const FEWEST: u32 = 8;
-/// Samples from which forecasts are judged where samples go where the error is: those that are shared
-/// out first fall by more than anything seen before.
-const FIRST_DECISION: u32 = 16;
 /// Doublings ahead of which samples are foretold.
-const AHEAD: usize = 3;
+const AHEAD: u32 = 3;
 
 /// What is known of pictures of one scene, one kind and one number of samples.
 #[derive(Clone, Copy)]
@@ -37,8 +34,19 @@ pub(crate) struct Judged {
     name: &'static str,
     kind: Kind,
     known: Vec<Known>,
-    /// Logarithm of the samples foretold over those it took, for every picture, count and later count.
-    foretold: Vec<f64>,
+    /// For every picture, count and later count.
+    foretold: Vec<Foretold>,
+}
+
+/// How well the samples were foretold that it takes to come down to a noise.
+#[derive(Clone, Copy)]
+struct Foretold {
+    /// Samples of the picture that told.
+    from: u32,
+    /// Doublings it took.
+    ahead: u32,
+    /// The samples that were still to come, as told, over those that came.
+    left: f64,
 }
 
 /// One picture as it goes on.
@@ -93,9 +101,7 @@ fn judge_kind(
         known.push(found);
         samples *= 2;
     }
-    let n_unknown = if kind.adaptive { (FIRST_DECISION / FEWEST).ilog2() } else { 0 };
-    let known_of = |run: &Run| foretold(&run.noises[n_unknown as usize..]);
-    let foretold = runs.iter().flat_map(known_of).collect();
+    let foretold = runs.iter().flat_map(|run| foretold(&run.noises)).collect();
     Ok(Judged { name, kind, known, foretold })
 }
 
@@ -136,14 +142,16 @@ fn compare(runs: &[Run], samples: u32) -> Known {
 }
 
 /// Of one picture whose samples double from one figure to the next.
-fn foretold(noises: &[Noise]) -> Vec<f64> {
-    let mut errors = Vec::new();
+fn foretold(noises: &[Noise]) -> Vec<Foretold> {
+    let mut all = Vec::new();
     for (i, early) in noises.iter().enumerate() {
-        for (steps, late) in noises[i..].iter().enumerate().skip(1).take(AHEAD) {
-            errors.push((early.samples_to(late.percent) / f64::from(1_u32 << steps)).ln());
+        for (ahead, late) in (1..=AHEAD).zip(&noises[i + 1..]) {
+            let took = f64::from((1_u32 << ahead) - 1);
+            let left = (early.samples_to(late.percent) - 1.0) / took;
+            all.push(Foretold { from: FEWEST << i, ahead, left });
         }
     }
-    errors
+    all
 }
 
 /// Writes the table.
@@ -163,15 +171,16 @@ pub(crate) fn report(
          The truth is the spread of {n_seeds} pictures that differ in their seed only, the figure the root \
          mean square of theirs; after ± stands the standard error of the ratio, from leaving out one \
          seed after another.\n\
-         The last column tells how far one picture's own forecast of the samples that a noise takes was \
-         off, up to three doublings ahead: the root mean square of the logarithm, and in which share of \
-         cases it was within a fifth.\n\n| scene | sampler |",
+         The last column tells how far one picture's own forecast of the samples that are left to a noise, \
+         and with them of the time, was off, up to three doublings ahead, from {FEWEST} samples on: the \
+         root mean square of the error, and in which share of cases it was within a fifth.\n\n\
+         | scene | sampler |",
         options.width, options.samples
     );
     for n in &counts {
         write!(text, " {n} |")?;
     }
-    text += " samples to come |\n|---|---|";
+    text += " time left |\n|---|---|";
     text += &"---|".repeat(counts.len() + 1);
     text += "\n";
     for Judged { name, kind, known, foretold } in all {
@@ -181,8 +190,7 @@ pub(crate) fn report(
         }
         writeln!(text, " {} |", accuracy(foretold.iter().copied()))?;
     }
-    text +=
-        "\n| sampler | figures within a quarter of the truth | samples to come |\n|---|---|---|\n";
+    text += "\n| sampler | figures within a quarter of the truth | time left |\n|---|---|---|\n";
     for kind in KINDS {
         let of_kind = || all.iter().filter(|judged| judged.kind.label == kind.label);
         let ratios = || of_kind().flat_map(|judged| &judged.known);
@@ -191,14 +199,37 @@ pub(crate) fn report(
         let (label, n) = (kind.label, ratios().count());
         writeln!(text, "| {label} | {n_within} of {n} | {} |", accuracy(foretold))?;
     }
+    text += "\nThe time left by the samples from which it was told, and how many doublings ahead:\n\n\
+             | sampler | from |";
+    for ahead in 1..=AHEAD {
+        write!(text, " {} times the samples |", 1 << ahead)?;
+    }
+    text += "\n|---|---|";
+    text += &"---|".repeat(AHEAD as usize);
+    text += "\n";
+    for kind in KINDS {
+        for from in &counts[..counts.len() - 1] {
+            write!(text, "| {} | {from} |", kind.label)?;
+            for ahead in 1..=AHEAD {
+                let of_kind = all.iter().filter(|judged| judged.kind.label == kind.label);
+                let foretold = of_kind.flat_map(|judged| judged.foretold.iter().copied());
+                let those = foretold.filter(|one| one.from == *from && one.ahead == ahead);
+                write!(text, " {} |", accuracy(those))?;
+            }
+            text += "\n";
+        }
+    }
     std::fs::write(folder.join("noise-figure.md"), text)?;
     Ok(())
 }
 
-fn accuracy(errors: impl Iterator<Item = f64>) -> String {
-    let errors: Vec<f64> = errors.collect();
-    let n = errors.len().max(1) as f64;
+fn accuracy(all: impl Iterator<Item = Foretold>) -> String {
+    let errors: Vec<f64> = all.map(|one| one.left - 1.0).collect();
+    if errors.is_empty() {
+        return String::new();
+    }
+    let n = errors.len() as f64;
     let square = errors.iter().map(|error| error.powi(2)).sum::<f64>() / n;
-    let n_within = errors.iter().filter(|error| error.abs() <= 1.2_f64.ln()).count();
+    let n_within = errors.iter().filter(|error| error.abs() <= 0.2).count();
     format!("{:.2}, {:.0} %", square.sqrt(), 100.0 * n_within as f64 / n)
 }

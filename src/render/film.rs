@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use crate::color::Picture;
-use crate::render::adaptive::{Allotment, is_decision};
+use crate::render::adaptive::{Allotment, is_told_anew};
+use crate::render::course::Course;
 use crate::render::features::PixelMap;
 use crate::render::integrator::Part;
 use crate::render::job::RenderSettings;
@@ -153,13 +154,14 @@ impl Film {
             return;
         }
         let model = ErrorModel::new(settings.sampler, &self.pixels);
-        if settings.adaptive && is_decision(n_samples) {
+        if settings.adaptive && is_told_anew(n_samples) {
             let width = self.width as usize;
             self.allotment = Some(Allotment::new(width, n_samples, &self.pixels, &model));
         }
         let allotment = self.allotment.as_ref();
-        let step = allotment.and_then(|allotment| allotment.step(n_samples, &self.pixels, &model));
-        self.noise = model.noise(&self.pixels, step);
+        let course = allotment.and_then(|all| all.course(n_samples, &self.pixels, &model));
+        let course = course.unwrap_or(Course::even(model.ratio()));
+        self.noise = model.noise(&self.pixels, course);
         self.model = Some(model);
     }
 

@@ -5,6 +5,7 @@
 //! accelerator and the grouping of passes.
 
 mod adaptive;
+mod course;
 mod emission;
 pub mod features;
 pub mod film;
@@ -23,10 +24,11 @@ use rayon::prelude::*;
 use crate::render::integrator::{Part, TileRenderer};
 
 pub use crate::geometry::Stopped;
+pub use course::{Course, Step};
 pub use features::{Feature, PixelMap, Seen};
 pub use film::{Film, Sampling};
 pub use job::{RenderJob, RenderSettings};
-pub use noise::{Noise, Step};
+pub use noise::Noise;
 pub use world::{Pick, World};
 
 /// What a pass did.

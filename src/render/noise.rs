@@ -12,11 +12,14 @@
 //! over all pixels, and drawn towards that of a discontinuity between two and four dimensions: what
 //! falls fast at first (smooth parts) leaves behind what falls slowly (edges), and few pixels may hold
 //! most of the error, so that chance decides; the more of it, the less the measured ratio counts. With
-//! it, quarters and eighths tell of D as well as the halves do.
+//! it, quarters and eighths tell of D as well as the halves do. The sum reaches far, where what falls
+//! slowest is left, so a slow measured ratio counts more in it than a fast one; what the next few
+//! doublings will do is a ratio of its own.
 
 use rayon::prelude::*;
 
 use crate::math::sampler::Sampler;
+use crate::render::course::Course;
 use crate::render::pixel::PixelSums;
 
 /// The error of a picture, as estimated from it.
@@ -26,42 +29,19 @@ pub struct Noise {
     pub percent: f64,
     /// Standard error of `percent`, as a share of it.
     pub uncertainty: f64,
-    /// By how much the squared error falls whenever samples double evenly.
-    pub ratio: f64,
-    /// What comes first, where samples go where the error is.
-    pub step: Option<Step>,
-}
-
-/// Samples that are shared out already.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
-    /// How many times the samples so far there are with them; more than 1.
-    pub samples: f64,
-    /// The squared error then over that of now; below 1.
-    pub ratio: f64,
+    /// How it will fall.
+    pub course: Course,
 }
 
 impl Noise {
     /// How many times the samples so far it takes to come down to `percent`.
     pub fn samples_to(&self, percent: f64) -> f64 {
-        let fall = (self.percent / percent).powi(2);
-        let evenly = |fall: f64| libm::pow(fall, -1.0 / libm::log2(self.ratio));
-        match self.step {
-            None => evenly(fall),
-            Some(step) if fall * step.ratio > 1.0 => step.samples * evenly(fall * step.ratio),
-            Some(step) => libm::pow(step.samples, -libm::log(fall) / libm::log(step.ratio)),
-        }
+        self.course.samples_to((percent / self.percent).powi(2))
     }
 
     /// The figure with so many times the samples so far.
     pub fn percent_after(&self, samples: f64) -> f64 {
-        let evenly = |times: f64| libm::pow(times, libm::log2(self.ratio));
-        let squared = match self.step {
-            None => evenly(samples),
-            Some(step) if samples > step.samples => step.ratio * evenly(samples / step.samples),
-            Some(step) => libm::pow(step.ratio, libm::log(samples) / libm::log(step.samples)),
-        };
-        self.percent * squared.sqrt()
+        self.percent * self.course.after(samples).sqrt()
     }
 }
 
@@ -69,6 +49,9 @@ impl Noise {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ErrorModel {
     sampler: Sampler,
+    /// By how much D falls at each of all doublings to come, on the whole.
+    tail: f64,
+    /// By how much the squared error falls at each of the next few.
     ratio: f64,
 }
 
@@ -80,11 +63,16 @@ const CHUNK: usize = 4096;
 impl ErrorModel {
     /// Reads the ratio off the pixels.
     pub(super) fn new(sampler: Sampler, pixels: &[PixelSums]) -> Self {
-        let ratio = match sampler {
-            Sampler::Random { .. } => INDEPENDENT,
-            Sampler::Sobol { .. } => sobol_ratio(pixels),
+        let (tail, ratio) = match sampler {
+            Sampler::Random { .. } => (INDEPENDENT, INDEPENDENT),
+            Sampler::Sobol { .. } => sobol_ratios(pixels),
         };
-        Self { sampler, ratio }
+        Self { sampler, tail, ratio }
+    }
+
+    /// By how much the squared error falls when samples double evenly.
+    pub(super) fn ratio(&self) -> f64 {
+        self.ratio
     }
 
     /// Estimate of the variance of the mean of a pixel's luminance; 0 below two samples.
@@ -100,8 +88,8 @@ impl ErrorModel {
             }
             Sampler::Sobol { .. } => {
                 let halves = f64::from(pixel.between_halves);
-                let quarters = self.ratio * f64::from(pixel.between_quarters);
-                let eighths = self.ratio.powi(2) * f64::from(pixel.between_eighths);
+                let quarters = self.tail * f64::from(pixel.between_quarters);
+                let eighths = self.tail.powi(2) * f64::from(pixel.between_eighths);
                 // One difference of halves, two of quarters, and two of the four of eighths.
                 let difference = match pixel.n_samples {
                     ..4 => halves,
@@ -109,7 +97,7 @@ impl ErrorModel {
                     8.. => (halves + 2.0 * quarters + 2.0 * eighths) / 5.0,
                 };
                 let last_power = f64::from(1_u32 << pixel.n_samples.ilog2());
-                let at_power = 0.25 * difference * self.ratio / (1.0 - self.ratio);
+                let at_power = 0.25 * difference * self.tail / (1.0 - self.tail);
                 at_power * self.fall(n / last_power)
             }
         }
@@ -121,7 +109,7 @@ impl ErrorModel {
     }
 
     /// The figure for a whole picture; `None` where there is none: too few samples, or black.
-    pub(super) fn noise(&self, pixels: &[PixelSums], step: Option<Step>) -> Option<Noise> {
+    pub(super) fn noise(&self, pixels: &[PixelSums], course: Course) -> Option<Noise> {
         let [variance, squares, light] = sums(pixels.len(), |place| {
             let pixel = &pixels[place];
             let variance = self.variance(pixel);
@@ -140,8 +128,7 @@ impl ErrorModel {
         (has_two && percent.is_finite()).then_some(Noise {
             percent,
             uncertainty: by_chance.hypot(by_model),
-            ratio: self.ratio,
-            step,
+            course,
         })
     }
 
@@ -156,20 +143,25 @@ impl ErrorModel {
     }
 }
 
-/// By how much D falls whenever samples double: see the module.
-fn sobol_ratio(pixels: &[PixelSums]) -> f64 {
-    /// Of discontinuities.
-    const OF_EDGES: f64 = 0.38;
-    /// How much a measured ratio counts that is free of chance, where that of edges is the rest.
-    const TRUST: f64 = 0.5;
-    /// Chance error that halves this. These three by the spread of both the figure and the samples
+/// By how much D falls, on the whole and at the next few doublings: see the module.
+fn sobol_ratios(pixels: &[PixelSums]) -> (f64, f64) {
+    /// Of discontinuities; and how much a measured ratio free of chance counts against it, if it is
+    /// below and above: what falls slower is left in the end.
+    const TAIL: (f64, [f64; 2]) = (0.38, [0.5, 0.7]);
+    /// The same for the next few doublings.
+    const NEXT: (f64, [f64; 2]) = (0.37, [0.45, 0.45]);
+    /// Chance error that halves this. These by the spread of both the figure and the samples
     /// foretold, over all scenes of the gallery, in pictures of several sizes.
     const DOUBT: f64 = 0.1;
     let of_eighths = Fall::new(pixels, 2, |pixel| pixel.between_eighths);
     let measured = of_eighths.or_else(|| Fall::new(pixels, 1, |pixel| pixel.between_quarters));
-    let Some(Fall { ratio, chance }) = measured else { return INDEPENDENT };
-    let trust = TRUST / (1.0 + (chance / DOUBT).powi(2));
-    OF_EDGES * libm::pow(ratio.clamp(0.05, INDEPENDENT) / OF_EDGES, trust)
+    let Some(Fall { ratio, chance }) = measured else { return (INDEPENDENT, INDEPENDENT) };
+    let toward = |(of_edges, [below, above]): (f64, [f64; 2])| {
+        let ratio = ratio.clamp(0.05, INDEPENDENT);
+        let trust = if ratio < of_edges { below } else { above };
+        of_edges * libm::pow(ratio / of_edges, trust / (1.0 + (chance / DOUBT).powi(2)))
+    };
+    (toward(TAIL), toward(NEXT))
 }
 
 /// By how much D has fallen at each of the last doublings, as the pixels show it.
@@ -251,7 +243,7 @@ mod tests {
         for (pixel, expected) in pixels.iter().zip(expected) {
             assert_near(model.variance(pixel), expected, "variance of the mean");
         }
-        let noise = model.noise(&pixels, None).unwrap();
+        let noise = model.noise(&pixels, Course::even(0.5)).unwrap();
         let mean = 0.5 * (3.0 + 4.0);
         assert_near(noise.percent, 100.0 * (8.0_f64 / 3.0).sqrt() / mean, "figure");
     }
@@ -259,39 +251,33 @@ mod tests {
     /// A quarter of all differences to come: of the halves and the quarters of the samples.
     #[test]
     fn sobol_points_are_judged_by_the_differences_to_come() {
-        let pixels = pixels(&[&[1.0, 2.0, 4.0, 5.0, 3.0, 1.0, 6.0, 4.0]]);
-        let model = ErrorModel::new(Sampler::Sobol { seed: 0 }, &pixels);
-        // Means of the quarters 1.5, 4.5, 2 and 5; of the eighths of the first half the samples.
-        let (halves, quarters, eighths) = (0.25_f64, 9.0, 1.0);
-        // One pixel: its squares are the squares of its sums.
-        let trust = 0.5 / (1.0 + 0.25 * (2.0 / 3.0 * 2.0) / 0.1_f64.powi(2));
-        let ratio = 0.38 * ((halves / eighths).sqrt() / 0.38).powf(trust);
-        assert_near(model.ratio, ratio, "ratio");
-        let difference = (halves + 2.0 * ratio * quarters + 2.0 * ratio.powi(2) * eighths) / 5.0;
-        let expected = 0.25 * difference * (ratio + ratio.powi(2) / (1.0 - ratio));
-        assert_near(model.variance(&pixels[0]), expected, "variance of the mean");
-    }
-
-    #[test]
-    fn samples_to_a_noise_are_those_at_which_the_law_gives_it() {
-        for ratio in [0.35_f64, 0.5] {
-            let noise = Noise { percent: 8.0, uncertainty: 0.1, ratio, step: None };
-            // Three doublings.
-            let goal = 8.0 * ratio.powf(1.5);
-            assert_near(noise.samples_to(goal), 8.0, "three doublings");
-        }
-    }
-
-    /// What is shared out already comes first: half of the error is gone with thrice the samples.
-    #[test]
-    fn samples_to_a_noise_begin_with_those_shared_out() {
-        let step = Some(Step { samples: 3.0, ratio: 0.25 });
-        let noise = Noise { percent: 8.0, uncertainty: 0.1, ratio: 0.5, step };
-        for (samples, percent) in
-            [(1.0, 8.0), (3.0_f64.sqrt(), 8.0 * 0.5_f64.sqrt()), (3.0, 4.0), (12.0, 2.0)]
+        // Means of the quarters 1.5, 4.5, 2 and 4.625; of the eighths of the first half the samples.
+        let falling = [1.0, 2.0, 4.0, 5.0, 3.0, 1.0, 6.0, 3.25];
+        // Halves as far apart as the eighths: as fast as independent samples, at most.
+        let even = [1.0, 2.0, 2.0, 1.0, 2.5, 2.5, 2.5, 2.5];
+        for (values, [halves, quarters, eighths], trust) in
+            [(falling, [0.3125_f64.powi(2), 7.945_312_5, 1.0], 0.5), (even, [1.0, 0.0, 1.0], 0.7)]
         {
-            assert_near(noise.samples_to(percent), samples, "samples");
-            assert_near(noise.percent_after(samples), percent, "figure");
+            let pixels = pixels(&[&values]);
+            let model = ErrorModel::new(Sampler::Sobol { seed: 0 }, &pixels);
+            // One pixel: its squares are the squares of its sums.
+            let chance = 1.0 + 0.25 * (2.0 / 3.0 * 2.0) / 0.1_f64.powi(2);
+            let measured = (halves / eighths).sqrt().min(0.5);
+            let toward = |edges: f64, trust: f64| edges * (measured / edges).powf(trust / chance);
+            let tail = toward(0.38, trust);
+            assert_near(model.tail, tail, "tail");
+            assert_near(model.ratio, toward(0.37, 0.45), "ratio");
+            let difference = (halves + 2.0 * tail * quarters + 2.0 * tail.powi(2) * eighths) / 5.0;
+            let expected = 0.25 * difference * (tail + tail.powi(2) / (1.0 - tail));
+            assert_near(model.variance(&pixels[0]), expected, "variance of the mean");
         }
+    }
+
+    /// The figure is a root: half of it is a quarter of the squared error.
+    #[test]
+    fn the_figure_follows_the_course() {
+        let noise = Noise { percent: 8.0, uncertainty: 0.1, course: Course::even(0.5) };
+        assert_near(noise.samples_to(4.0), 4.0, "samples");
+        assert_near(noise.percent_after(4.0), 4.0, "figure");
     }
 }

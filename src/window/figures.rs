@@ -67,6 +67,7 @@ pub(super) fn noise_text(noise: Noise) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::Course;
 
     #[test]
     fn figures_show_what_matters_and_no_more() {
@@ -112,7 +113,7 @@ mod tests {
             (0.0421, 0.1, "0.042 ± 0.004 %"),
             (2.13, 0.0, "2.1 %"),
         ] {
-            let noise = Noise { percent, uncertainty, ratio: 0.5, step: None };
+            let noise = Noise { percent, uncertainty, course: Course::even(0.5) };
             assert_eq!(noise_text(noise), text, "for {percent} ± {uncertainty}");
         }
     }

@@ -217,12 +217,13 @@ fn probed_text(probed: &Probed) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::Course;
 
     fn line(work: Work) -> StatusLine {
         StatusLine {
             work,
             samples: (48, 256),
-            noise: Some(Noise { percent: 2.13, uncertainty: 0.08, ratio: 0.5, step: None }),
+            noise: Some(Noise { percent: 2.13, uncertainty: 0.08, course: Course::even(0.5) }),
             seconds: 3.9,
             seconds_left: Some(12.9),
             rays_per_second: 8.4e6,

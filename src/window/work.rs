@@ -170,11 +170,12 @@ fn same_picture(a: &SceneDescription, b: &SceneDescription) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::Course;
 
     #[test]
     fn the_noise_of_one_picture_is_not_told_of_another() {
         let mut work = RenderWork::new(Session::new(1, || {}).unwrap());
-        let noise = |percent| Noise { percent, uncertainty: 0.1, ratio: 0.5, step: None };
+        let noise = |percent| Noise { percent, uncertainty: 0.1, course: Course::even(0.5) };
         for samples in [4, 8] {
             work.note_noise(3, samples, Some(noise(10.0)));
         }

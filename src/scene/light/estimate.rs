@@ -77,3 +77,68 @@ impl Light {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Frame;
+
+    /// On the axis of a light, the irradiance of a surface that faces it is known: π sin² of the angle of
+    /// its rim times the radiance for round lights, and for a rectangle nearly so, by its area.
+    #[test]
+    fn estimates_are_exact_on_the_axis() {
+        let (color, height) = (Rgb::new(2.0, 3.0, 1.0), 2.0);
+        let (from, center) = (Vec3::new(0.3, -0.2, 0.5), Vec3::new(0.3, height - 0.2, 0.5));
+        let frame = Frame::from_normal(Vec3::NEG_Y);
+        let bright = 0.2126 * 2.0 + 0.7152 * 3.0 + 0.0722;
+        let radius = 1.5_f32;
+        let [of_disk, of_sphere] = [height.hypot(radius), height].map(|far| (radius / far).powi(2));
+        let half = [1.2_f32, 0.5];
+        let diagonal = half[0].hypot(half[1]);
+        let of_area = 4.0 * half[0] * half[1] / (height.powi(2) + 4.0 * half[0] * half[1] / PI);
+        let cap = 0.3_f32;
+        for (emitter, half_width, irradiance) in [
+            (Emitter::Point { position: center, intensity: color }, 0.0, 0.25),
+            (Emitter::Spot { position: center, normal: Vec3::NEG_Y, intensity: color }, 0.0, 0.25),
+            (
+                Emitter::Disk { center, frame, radius, radiance: color },
+                radius / height,
+                PI * of_disk,
+            ),
+            (Emitter::Sphere { center, radius, radiance: color }, radius / height, PI * of_sphere),
+            (
+                Emitter::Rectangle { center, frame, half, radiance: color },
+                diagonal / height,
+                of_area,
+            ),
+            (Emitter::Sun { towards: Vec3::Y, irradiance: color }, 0.0, 1.0),
+            (Emitter::sun(Vec3::Y, f64::from(cap), color), libm::sinf(cap), 1.0),
+        ] {
+            let found = Light { visible: true, emitter }.estimate(from).unwrap();
+            let near =
+                |found: f32, expected: f32| (found - expected).abs() < 1e-4 * expected.max(0.1);
+            assert!(near(found.irradiance, irradiance * bright), "{emitter:?}: {found:?}");
+            assert!(near(found.half_width, half_width), "{emitter:?}: {found:?}");
+            assert!((found.direction - Vec3::Y).length() < 1e-6, "{emitter:?}: {found:?}");
+        }
+    }
+
+    /// Beside a plane light its whole face is taken for as bright as its brightest point, a spot by its
+    /// cosine; behind either is nothing.
+    #[test]
+    fn estimates_fall_with_the_cosine_of_emission() {
+        let frame = Frame::from_normal(Vec3::Y);
+        let (center, intensity) = (Vec3::ZERO, Rgb::splat(1.0));
+        let disk = Emitter::Disk { center, frame, radius: 0.5, radiance: Rgb::splat(1.0) };
+        let spot = Emitter::Spot { position: center, normal: Vec3::Y, intensity };
+        let estimate = |emitter, from| Light { visible: true, emitter }.estimate(from);
+        // At 60 degrees from the normal, two units away.
+        let from = Vec3::new(3.0_f32.sqrt(), 1.0, 0.0);
+        let area = PI * 0.25;
+        for (emitter, expected) in [(disk, area * (1.5 / 2.0) / (4.0 + 0.25)), (spot, 0.5 / 4.0)] {
+            let found = estimate(emitter, from).unwrap().irradiance;
+            assert!((found / expected - 1.0).abs() < 1e-5, "{emitter:?}: {found}, not {expected}");
+            assert!(estimate(emitter, -from).is_none(), "{emitter:?} from behind");
+        }
+    }
+}

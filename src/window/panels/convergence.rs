@@ -281,6 +281,7 @@ fn outlook(convergence: &Convergence<'_>, goal_percent: Option<f64>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::Course;
 
     /// After eight samples.
     fn told(noise: Noise, seconds: f64, is_rendering: bool, goal: Option<f64>) -> String {
@@ -288,7 +289,7 @@ mod tests {
     }
 
     fn noise(percent: f64, ratio: f64) -> Noise {
-        Noise { percent, uncertainty: 0.1, ratio, step: None }
+        Noise { percent, uncertainty: 0.1, course: Course::even(ratio) }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! A panel by itself, and the hand that works it.
 
 use super::small_scene;
-use crate::render::Noise;
+use crate::render::{Course, Noise};
 use crate::scene::description::SceneDescription;
 use crate::window::panels::{
     Convergence, DisplayState, Limits, PickFor, RenderFacts, Selection, SizeMode, camera_ui,
@@ -65,7 +65,7 @@ pub(super) fn render_with(ui: &mut egui::Ui, bench: &mut Bench, noise: &[(u32, N
 }
 
 pub(super) const fn noise(percent: f64) -> Noise {
-    Noise { percent, uncertainty: 0.1, ratio: 0.5, step: None }
+    Noise { percent, uncertainty: 0.1, course: Course::even(0.5) }
 }
 pub(super) const ALL: [Panel; 7] = [CAMERA, LIGHTS, MATERIALS, TEXTURES, OBJECTS, DISPLAY, RENDER];
 
