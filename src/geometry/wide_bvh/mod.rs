@@ -173,7 +173,7 @@ impl WideBvh {
 
     /// Takes the hits of one ray in object space into a search.
     pub(super) fn intersect(&self, ray: &Ray, object: u32, search: &mut Search) {
-        dispatch::intersect(self, ray, object, search);
+        FLEET.with_borrow_mut(|fleet| dispatch::intersect(self, ray, fleet, object, search));
     }
 
     /// [`WideBvh::intersect`] that adds up what it takes, the same on every machine.
@@ -185,11 +185,6 @@ impl WideBvh {
         cost: &mut TraversalCost,
     ) {
         single::nearest_counted(self, ray, object, search, cost);
-    }
-
-    /// Whether anything but the ray's source lies between its ends.
-    pub(super) fn occluded(&self, ray: &Ray, object: u32) -> bool {
-        dispatch::occluded(self, ray, object)
     }
 
     /// [`WideBvh::intersect`] for many rays, one `nearest` each.
@@ -205,7 +200,8 @@ impl WideBvh {
         });
     }
 
-    /// [`WideBvh::occluded`] for many rays; those already blocked are left out.
+    /// Whether anything but its source lies between the ends of each ray; those already blocked are left
+    /// out.
     pub(super) fn occluded_batch(&self, rays: &RayBatch, object: u32, blocked: &mut [bool]) {
         let (t_max, source) = (&rays.t_max[..], &rays.source[..]);
         FLEET.with_borrow_mut(|fleet| {
@@ -256,8 +252,8 @@ mod dispatch {
     }
 
     compiled! {
-        intersect => single::nearest, (ray: &Ray, object: u32, search: &mut Search) -> ();
-        occluded => single::blocked, (ray: &Ray, object: u32) -> bool;
+        intersect => single::nearest,
+            (ray: &Ray, fleet: &mut Fleet, object: u32, search: &mut Search) -> ();
         intersect_batch => packet::nearest,
             (rays: &RayBatch, fleet: &mut Fleet, hits: &mut TakeNearest<'_>) -> ();
         occluded_batch => packet::blocked,
