@@ -206,8 +206,8 @@ impl App {
         self.render(&ctx, scene);
         self.export_box(&ctx);
         self.help_overlay(&ctx);
-        self.offer_copy(&ctx);
         self.ask_for_paths(&ctx);
+        self.offer_copy(&ctx);
         self.ask_about_unsaved(&ctx);
         if !self.interface.start_shown {
             drop_hint(&ctx, self.viewport.rect);

@@ -1,10 +1,11 @@
 //! What would lose something is asked about first: unsaved edits, a picture at work.
 
 use super::app::App;
-use super::dialogs::{UnsavedAnswer, picture_question, unsaved_question};
+use super::dialogs::{Answered, Purpose};
 use super::files::Pending;
+use super::theme::{self, modal_frame};
 use crate::loader::Source;
-use egui::ViewportCommand;
+use egui::{Button, Id, RichText, Ui, ViewportCommand};
 
 impl App {
     /// Opens a source, after a question where edits would be lost.
@@ -84,4 +85,87 @@ impl App {
     pub(super) fn stop_asking(&mut self) -> bool {
         !self.files.is_saving_first && self.files.pending.take().is_some()
     }
+
+    /// Takes what a question for a path ended with.
+    pub(super) fn take_path(&mut self, ctx: &egui::Context, answered: Answered) {
+        match (answered.purpose, answered.path) {
+            (Purpose::Open, Some(path)) => self.open(Source::File(path)),
+            (Purpose::SaveScene, Some(path)) => self.save_to(ctx, path),
+            (Purpose::SaveScene, None) => self.give_up_saving(),
+            (Purpose::PictureFolder, Some(path)) => self.interface.export.folder = Some(path),
+            (Purpose::Open | Purpose::PictureFolder, None) => {}
+        }
+    }
+
+    /// Nothing is saved after all: what waited for that does not happen.
+    pub(super) fn give_up_saving(&mut self) {
+        if std::mem::take(&mut self.files.is_saving_first) {
+            self.files.pending = None;
+        }
+    }
+}
+
+/// What to do with edits that no file holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum UnsavedAnswer {
+    /// Save them first.
+    Save,
+    /// Let them go.
+    Discard,
+    /// Stay.
+    Cancel,
+}
+
+/// Asks what to do with unsaved edits of the scene of that name.
+fn unsaved_question(ctx: &egui::Context, title: &str) -> Option<UnsavedAnswer> {
+    let asked = format!("Save the changes to {title}?");
+    let told = "They are lost if you do not save them.";
+    let answers = [
+        ("Save", UnsavedAnswer::Save),
+        ("Do not save", UnsavedAnswer::Discard),
+        ("Cancel", UnsavedAnswer::Cancel),
+    ];
+    question(ctx, &asked, told, &answers, UnsavedAnswer::Cancel)
+}
+
+/// Asks whether to close the window while a picture is being rendered: true closes it.
+fn picture_question(ctx: &egui::Context) -> Option<bool> {
+    let told = "It is lost if you close the window now.";
+    let answers = [("Go on rendering", false), ("Stop it and close", true)];
+    question(ctx, "A picture is still being rendered", told, &answers, false)
+}
+
+/// A question with its answers, the likeliest first: Enter gives that one, Escape gives `none`.
+fn question<T: Copy>(
+    ctx: &egui::Context,
+    asked: &str,
+    told: &str,
+    answers: &[(&str, T)],
+    none: T,
+) -> Option<T> {
+    let frame = modal_frame(&ctx.global_style());
+    let modal = egui::Modal::new(Id::unique("question")).frame(frame).show(ctx, |ui| {
+        ui.set_width(360.0);
+        ui.heading(asked);
+        ui.add_space(4.0);
+        ui.label(RichText::new(told).weak());
+        ui.add_space(12.0);
+        ui.horizontal(|ui| answers_ui(ui, answers)).inner
+    });
+    modal.inner.or(modal.should_close().then_some(none))
+}
+
+fn answers_ui<T: Copy>(ui: &mut Ui, answers: &[(&str, T)]) -> Option<T> {
+    let mut given = None;
+    for (index, (name, answer)) in answers.iter().enumerate() {
+        let button = if index == 0 { theme::main_button(ui, name) } else { Button::new(*name) };
+        let response = ui.add(button);
+        if index == 0 && ui.memory(|memory| memory.focused().is_none()) {
+            response.request_focus();
+        }
+        if response.clicked() {
+            given = Some(*answer);
+        }
+    }
+    given
 }

@@ -179,7 +179,7 @@ fn menus_open_whole_and_their_lines_lie_apart() {
 /// Something that opens a box or a page.
 type Opening = fn(&mut Harness<'_, App>);
 
-const BOXES: [(&str, Opening); 12] = [
+const BOXES: [(&str, Opening); 13] = [
     ("the help", |harness| harness.key_press(Key::H)),
     ("the box that renders", |harness| harness.key_press_modifiers(Modifiers::SHIFT, Key::F12)),
     ("the start page", |harness| harness.key_press_modifiers(Modifiers::COMMAND, Key::G)),
@@ -217,6 +217,11 @@ const BOXES: [(&str, Opening); 12] = [
         harness.state_mut().dialogs.type_path(Purpose::Open, "");
     }),
     ("the offer of a copy", |harness| harness.state_mut().recovery.pretend_to_find("copy.png")),
+    ("the offer of a copy and the box for a path", |harness| {
+        harness.state_mut().recovery.pretend_to_find("copy.png");
+        harness.run_steps(2);
+        harness.state_mut().dialogs.type_path(Purpose::Open, "");
+    }),
     ("the pinned picture", |harness| {
         wait_until(harness, |app| app.picture_on_show().is_some());
         harness.key_press(Key::X);

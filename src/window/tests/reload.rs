@@ -128,7 +128,7 @@ fn a_restored_scene_is_kept_again_and_finds_its_files() {
         let mut harness = window_with(&path, SIZE, Some(own.clone()));
         if 0 < round {
             harness.run_steps(3);
-            harness.get_by_role_and_label(Role::Button, "Restore it").click();
+            harness.get_by_role_and_label(Role::Button, "Restore").click();
             wait_until(&mut harness, |app| app.files.title == "restored");
         }
         let app = harness.state();
@@ -197,17 +197,17 @@ fn a_copy_of_edits_goes_once_they_are_saved_or_let_go() {
     harness.key_press(Key::E);
     harness.run_steps(80);
     assert_eq!(std::fs::read(&copy).unwrap(), left_behind, "the copy on offer is overwritten");
-    press(&mut harness, "Let it go");
+    press(&mut harness, "Discard");
     wait_until(&mut harness, |_| {
         std::fs::read(&copy).is_ok_and(|kept| !kept.is_empty() && kept != left_behind)
     });
-    assert!(harness.query_by_label("Restore it").is_none(), "it is offered again");
+    assert!(harness.query_by_label("Restore").is_none(), "it is offered again");
     edit(&mut harness);
     drop(harness);
     let mut harness = window_with(&path, SIZE, Some(own));
-    press(&mut harness, "Restore it");
+    press(&mut harness, "Restore");
     wait_until(&mut harness, |app| app.files.title == "restored");
-    assert!(harness.query_by_label("Restore it").is_none(), "the restored one is offered again");
+    assert!(harness.query_by_label("Restore").is_none(), "the restored one is offered again");
     assert!(harness.state().document.is_dirty(), "what only the copy holds counts as saved");
     assert!(copy.is_file(), "the copy is gone before it is saved");
     let saved = folder.path().join("saved.toml");

@@ -229,7 +229,7 @@ fn unsaved_edits_survive_a_crash() {
     };
     let mut harness = window_with(&path, [1024.0, 700.0], Some(own));
     assert_ne!(harness.state().document.description, edited, "the file was saved");
-    harness.get_by_role_and_label(Role::Button, "Restore it").click();
+    harness.get_by_role_and_label(Role::Button, "Restore").click();
     wait_until(&mut harness, |app| app.files.title == "restored");
     let restored = &harness.state().document.description;
     assert_eq!(*restored, edited, "the edits were lost");
