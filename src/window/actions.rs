@@ -70,13 +70,13 @@ impl App {
             Action::CopyImage => self.copy_picture(ctx),
             Action::Undo => {
                 if let Some(step) = self.document.undo() {
-                    self.toasts.say(format!("undone: {step}"));
+                    self.toasts.say_anew("undone: ", &step);
                 }
                 scene.clone_from(&self.document.description);
             }
             Action::Redo => {
                 if let Some(step) = self.document.redo() {
-                    self.toasts.say(format!("done again: {step}"));
+                    self.toasts.say_anew("done again: ", &step);
                 }
                 scene.clone_from(&self.document.description);
             }
@@ -115,6 +115,7 @@ impl App {
             ToolbarChoice::Do(action) => self.do_action(ctx, scene, action),
             ToolbarChoice::File(path) => self.open(Source::File(path)),
             ToolbarChoice::PathBox => self.dialogs.type_path(Purpose::Open, ""),
+            ToolbarChoice::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
         }
     }
 
@@ -186,7 +187,8 @@ impl App {
     fn enlarge_text(&mut self, ctx: &egui::Context, tenths: f32) {
         self.interface.enlarge(tenths);
         ctx.set_zoom_factor(self.interface.scale);
-        self.toasts.say(format!("text at {:.0} %", self.interface.scale * 100.0));
+        let percent = format!("{:.0} %", self.interface.scale * 100.0);
+        self.toasts.say_anew("text at ", &percent);
     }
 
     fn cancel(&mut self, ctx: &egui::Context) {

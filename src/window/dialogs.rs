@@ -25,6 +25,10 @@ pub(super) enum Purpose {
     SaveScene,
     /// The folder of rendered pictures.
     PictureFolder,
+    /// The mesh of an object.
+    Mesh,
+    /// The picture of a texture.
+    Image,
 }
 
 /// The end of a question for a path.
@@ -189,7 +193,7 @@ impl Typing {
         };
         match self.purpose {
             Purpose::SaveScene => with_scene_ending(&path),
-            Purpose::Open | Purpose::PictureFolder => path,
+            Purpose::Open | Purpose::PictureFolder | Purpose::Mesh | Purpose::Image => path,
         }
     }
 }
@@ -210,6 +214,14 @@ fn system_dialog(dialog: &rfd::AsyncFileDialog, purpose: Purpose, suggestion: &s
             Box::pin(dialog.set_directory(folder).save_file())
         }
         Purpose::PictureFolder => Box::pin(dialog.set_directory(suggestion).pick_folder()),
+        Purpose::Mesh => {
+            let dialog = dialog.add_filter("Meshes", &["obj"]);
+            Box::pin(dialog.set_directory(suggestion).pick_file())
+        }
+        Purpose::Image => {
+            let dialog = dialog.add_filter("Pictures", &["png", "jpg", "jpeg"]);
+            Box::pin(dialog.set_directory(suggestion).pick_file())
+        }
     };
     Box::pin(async { chosen.await.map(|file| file.path().to_owned()) })
 }
@@ -225,6 +237,8 @@ fn path_box(ctx: &egui::Context, over: Rect, typing: &mut Typing) -> BoxAnswer {
         Purpose::Open => ("Open a scene, a mesh or a snapshot", "path of a file", "Open"),
         Purpose::SaveScene => ("Save the scene as", "path of a file", "Save"),
         Purpose::PictureFolder => ("Folder for pictures", "path of a folder", "Choose"),
+        Purpose::Mesh => ("Choose a mesh", "path of an OBJ file", "Choose"),
+        Purpose::Image => ("Choose a picture", "path of a PNG or JPEG file", "Choose"),
     };
     let replaces = typing.replaces.clone().filter(|path| *path == typing.path());
     let button = if replaces.is_some() { "Replace" } else { button };

@@ -2,6 +2,7 @@
 
 use super::app::{App, empty_scene};
 use super::files::{Written, file_title};
+use super::keys::Action;
 use super::panels::{self, PickFor};
 use super::probe::{described, part_of};
 use super::status::Probed;
@@ -137,10 +138,14 @@ impl App {
                 }
             }
         }
+        if self.interface.panel_shown {
+            return;
+        }
+        // The panel would say it.
         let Probed { object, material, .. } = told;
-        let made_of = if material.is_empty() { String::new() } else { format!(" and {material}") };
-        let shows = if self.interface.panel_shown { "the panel shows " } else { "" };
-        self.toasts.say(format!("{shows}{object}{made_of}"));
+        let made_of = if material.is_empty() { String::new() } else { format!(", {material}") };
+        let hint = self.keys.hint("shown in the panel", Action::TogglePanel);
+        self.toasts.say(format!("{object}{made_of}: {hint}"));
     }
 
     /// Opens a file that was dropped on the window.

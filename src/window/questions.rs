@@ -3,9 +3,12 @@
 use super::app::App;
 use super::dialogs::{Answered, Purpose};
 use super::files::Pending;
+use super::relocate::relative;
+use super::structure::{Part, set_file};
 use super::theme::{self, modal_frame};
 use crate::loader::Source;
 use egui::{Button, Id, RichText, Ui, ViewportCommand};
+use std::path::Path;
 
 impl App {
     /// Opens a source, after a question where edits would be lost.
@@ -93,8 +96,32 @@ impl App {
             (Purpose::SaveScene, Some(path)) => self.save_to(ctx, path),
             (Purpose::SaveScene, None) => self.give_up_saving(),
             (Purpose::PictureFolder, Some(path)) => self.interface.export.folder = Some(path),
-            (Purpose::Open | Purpose::PictureFolder, None) => {}
+            (Purpose::Mesh | Purpose::Image, Some(path)) => self.take_part_file(&path),
+            (Purpose::Open | Purpose::PictureFolder | Purpose::Mesh | Purpose::Image, None) => {}
         }
+    }
+
+    /// Asks for the file that a part wants.
+    pub(super) fn ask_for_part_file(&mut self, ctx: &egui::Context) {
+        let Some((part, name)) = self.interface.selection.wants_file.take() else { return };
+        let purpose = if part == Part::Texture { Purpose::Image } else { Purpose::Mesh };
+        self.file_wanted = Some((part, name));
+        let folder = self.files.folder.disk_path("").unwrap_or_default();
+        self.dialogs.ask(ctx, purpose, &folder.display().to_string());
+    }
+
+    fn take_part_file(&mut self, path: &Path) {
+        let Some((part, name)) = self.file_wanted.take() else { return };
+        let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let folder = self.files.folder.disk_path("");
+        let file = folder.map_or_else(
+            || whole.to_string_lossy().into_owned(),
+            |folder| relative(&whole, &folder),
+        );
+        let mut scene = self.document.description.clone();
+        set_file(&mut scene, part, &name, file);
+        self.gesture.next();
+        self.take_edit(scene);
     }
 
     /// Nothing is saved after all: what waited for that does not happen.

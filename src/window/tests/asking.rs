@@ -1,11 +1,13 @@
 //! What asks the system for a file, and what becomes of its answer.
 
 use super::whole::{scene_file, wait_until, window};
+use crate::scene::description::{ObjectKind, TextureKind};
 use crate::window::app::App;
 use crate::window::dialogs::Purpose;
 use crate::window::files::Pending;
 use crate::window::keys::Action;
-use egui::{Key, Modifiers, Role};
+use crate::window::structure::Part;
+use egui::{Key, Modifiers, Role, ViewportCommand, ViewportId};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use std::path::PathBuf;
@@ -223,4 +225,50 @@ fn another_file_is_replaced_only_after_a_second_answer() {
     harness.key_press(Key::Enter);
     wait_until(&mut harness, |app| !app.document.is_dirty());
     assert_eq!(harness.state().files.scene_path.as_ref(), Some(&other), "saved elsewhere");
+}
+
+#[test]
+fn a_part_gets_the_file_that_is_chosen_in_one_step() {
+    for (part, name, file) in
+        [(Part::Object, "ball", "a.obj"), (Part::Texture, "veins", "sub/a.png")]
+    {
+        let folder = tempfile::tempdir().unwrap();
+        let path = scene_file(folder.path());
+        std::fs::create_dir(folder.path().join("sub")).unwrap();
+        std::fs::write(folder.path().join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+            .unwrap();
+        let pixels = crate::io::output::encode_png((1, 1), &[9; 3], &[]).unwrap();
+        std::fs::write(folder.path().join("sub/a.png"), pixels).unwrap();
+        let mut harness = window(&path, SIZE);
+        let before = harness.state().document.description.clone();
+        answer(&mut harness, Some(folder.path().join(file)));
+        harness.state_mut().interface.selection.wants_file = Some((part, name.to_owned()));
+        wait_until(&mut harness, |app| app.document.is_dirty());
+        let scene = harness.state().document.description.clone();
+        let given = match part {
+            Part::Object => (scene.objects[0].kind == ObjectKind::Mesh, &scene.objects[0].file),
+            _ => (scene.textures[0].kind == TextureKind::Image, &scene.textures[0].file),
+        };
+        assert_eq!(given, (true, &Some(file.to_owned())), "{name}");
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        harness.run_steps(3);
+        assert_eq!(harness.state().document.description, before, "{name}: not one step");
+    }
+}
+
+#[test]
+fn the_menu_closes_the_window() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&scene_file(folder.path()), SIZE);
+    press(&mut harness, "File");
+    let quit = harness.get_by(|node| {
+        node.role() == Role::Button && node.label().is_some_and(|label| label.starts_with("Quit"))
+    });
+    quit.click();
+    let mut asked = Vec::new();
+    for _ in 0..4 {
+        harness.step();
+        asked.extend(harness.output().viewport_output[&ViewportId::ROOT].commands.clone());
+    }
+    assert!(asked.contains(&ViewportCommand::Close), "it does not close: {asked:?}");
 }

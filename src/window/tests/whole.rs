@@ -138,6 +138,7 @@ fn a_drag_over_the_picture_turns_the_camera_and_is_one_step_of_undo() {
     harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
     harness.run_steps(3);
     assert_eq!(harness.state().document.description, before, "not one step of undo");
+    harness.get_by_label("undone: camera move");
 }
 
 #[test]
