@@ -10,7 +10,10 @@ use crate::geometry::Stopped;
 use crate::geometry::kd_tree::Item;
 use crate::math::Aabb;
 
-const N_BINS: usize = 16;
+/// Bins along an axis: more for ranges of many items, where they cost little beside the items.
+const FEW_BINS: usize = 16;
+const MANY_BINS: usize = 32;
+const MANY_ITEMS: usize = 1024;
 
 /// Ranges of more items are divided in parallel, and only if that is still wanted.
 pub(super) const LARGE: usize = 4096;
@@ -77,7 +80,13 @@ fn split<'a, const LEAF: usize>(range: Range<'a>, depth: u32) -> (Range<'a>, Ran
         all.grow(center2(item));
         all
     });
-    let cut = if depth < SAH_DEPTH { best_cut::<LEAF>(&range, &centers) } else { None };
+    let cut = if depth >= SAH_DEPTH {
+        None
+    } else if range.items.len() < MANY_ITEMS {
+        best_cut::<LEAF, FEW_BINS>(&range, &centers)
+    } else {
+        best_cut::<LEAF, MANY_BINS>(&range, &centers)
+    };
     let middle = match cut {
         Some(cut) => partition(range.items, &cut),
         None => {
@@ -115,16 +124,19 @@ struct Cut {
     border: usize,
     low: f32,
     scale: f32,
+    n_bins: usize,
 }
 
-impl Cut {
-    fn bin(low: f32, scale: f32, x: f32) -> usize {
-        (((x - low) * scale) as usize).min(N_BINS - 1)
-    }
+#[inline(always)]
+fn bin(low: f32, scale: f32, n_bins: usize, x: f32) -> usize {
+    (((x - low) * scale) as usize).min(n_bins - 1)
 }
 
 /// The cut of least cost; none where the centres are one.
-fn best_cut<const LEAF: usize>(range: &Range<'_>, centers: &Aabb) -> Option<Cut> {
+fn best_cut<const LEAF: usize, const N_BINS: usize>(
+    range: &Range<'_>,
+    centers: &Aabb,
+) -> Option<Cut> {
     let extent = centers.extent();
     let scale = Vec3::splat(N_BINS as f32) / extent;
     // Not flat along that axis, nor so small that its reciprocal overflows.
@@ -136,7 +148,7 @@ fn best_cut<const LEAF: usize>(range: &Range<'_>, centers: &Aabb) -> Option<Cut>
     for item in range.items.iter() {
         let center = center2(item);
         for axis in 0..3 {
-            let bin = Cut::bin(centers.min[axis], scale[axis], center[axis]);
+            let bin = bin(centers.min[axis], scale[axis], N_BINS, center[axis]);
             let entry = &mut bins[axis][bin];
             entry.0 = entry.0.union(item.bounds);
             entry.1 += 1;
@@ -165,7 +177,7 @@ fn best_cut<const LEAF: usize>(range: &Range<'_>, centers: &Aabb) -> Option<Cut>
             let total = cost(bounds.half_area(), n) + upper_costs[border];
             if best.as_ref().is_none_or(|(least, _)| total < *least) {
                 let (low, scale) = (centers.min[axis], scale[axis]);
-                best = Some((total, Cut { axis, border, low, scale }));
+                best = Some((total, Cut { axis, border, low, scale, n_bins: N_BINS }));
             }
         }
     }
@@ -174,7 +186,8 @@ fn best_cut<const LEAF: usize>(range: &Range<'_>, centers: &Aabb) -> Option<Cut>
 
 /// Puts the items of the lower side first, in a fixed order; gives how many they are.
 fn partition(items: &mut [Item], cut: &Cut) -> usize {
-    let is_lower = |item: &Item| Cut::bin(cut.low, cut.scale, center2(item)[cut.axis]) < cut.border;
+    let is_lower =
+        |item: &Item| bin(cut.low, cut.scale, cut.n_bins, center2(item)[cut.axis]) < cut.border;
     let (mut first, mut last) = (0, items.len());
     loop {
         while first < last && is_lower(&items[first]) {

@@ -23,6 +23,7 @@ use glam::Vec3;
 use crate::geometry::lanes::{Isa, Portable};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::nearest::{Nearest, Search};
+use crate::geometry::wide_bvh::descent::Start;
 use crate::geometry::wide_bvh::stream::{Fleet, TakeAny, TakeNearest};
 use crate::geometry::{Stopped, TraversalCost};
 use crate::math::{Aabb, Ray, RayBatch};
@@ -142,6 +143,12 @@ impl WideBvh {
         let (tree, root) = build::build(mesh, stop)?;
         let magnitude = mesh.bounds().max_abs();
         Ok(Self { nodes: tree.nodes, blocks: tree.blocks, root, magnitude })
+    }
+
+    /// Where a ray begins that goes alone.
+    #[inline(always)]
+    fn start(&self) -> Start {
+        Start { reference: self.root, enter: 0.0 }
     }
 
     /// Has a node or a block fetched.

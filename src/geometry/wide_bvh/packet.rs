@@ -6,7 +6,8 @@
 //! box go on with it. A triangle is tested against sixteen rays, or, where few touch the box of a
 //! large mesh's block, four rays against its four triangles at once. Rays that begin near each other
 //! and part soon go together as far as several of them touch the same boxes; from there on they are
-//! left to [`stream`].
+//! left to [`stream`]. Packets count what they cost and spare, so that rays go alone where that is
+//! less, as among leaves of a tree or long beams.
 //!
 //! Source: S. Boulos, I. Wald and C. Benthin, "Adaptive Ray Packet Reordering", IEEE RT 2008, for
 //! interval tests of packets.
@@ -14,7 +15,7 @@
 use crate::geometry::lanes::{Isa, Lanes};
 use crate::geometry::wide_bvh::descent::{STARTS, Start};
 use crate::geometry::wide_bvh::group::{Group, LANES};
-use crate::geometry::wide_bvh::sharing::{Share, Sharing};
+use crate::geometry::wide_bvh::sharing::{Share, Sharing, Toll};
 use crate::geometry::wide_bvh::stream::{self, Fleet, Take, TakeAny, TakeNearest};
 use crate::geometry::wide_bvh::{Block, LEAF, Node, WIDTH, WideBvh};
 use crate::math::RayBatch;
@@ -63,10 +64,10 @@ fn trace<I: Isa, T: Take>(bvh: &WideBvh, rays: &RayBatch, fleet: &mut Fleet, hit
             } else {
                 packet.walk::<T, false>(bvh, hits);
             }
-            packet.stragglers.hand_over(first, fleet);
+            packet.stragglers.hand_over(bvh, first, fleet);
+            sharing.learn(packet.toll);
         } else {
-            let start = [Start { reference: bvh.root, enter: 0.0 }];
-            (first..first + n).for_each(|ray| fleet.push(ray, &start));
+            (first..first + n).for_each(|ray| fleet.push(ray, &[bvh.start()]));
         }
         first += n;
     }
@@ -86,6 +87,8 @@ struct Packet<I: Isa> {
     n_alone: usize,
     stragglers: Stragglers,
     stack: Stack,
+    /// Of the packet under way.
+    toll: Toll,
 }
 
 /// Bounds of a packet's reciprocal directions and origins along one axis, all directions having the
@@ -115,6 +118,7 @@ impl<I: Isa> Packet<I> {
             n_alone: 0,
             stragglers: Stragglers::NONE,
             stack: Stack { entries: [Entry::NONE; STACK], n: 0 },
+            toll: Toll::default(),
         }
     }
 
@@ -124,6 +128,8 @@ impl<I: Isa> Packet<I> {
         self.n_groups = n.div_ceil(LANES);
         self.first = first;
         self.farthest = -1.0;
+        // Alone, each would ask the root.
+        self.toll = Toll { paid: 0, spared: n as u32 };
         for (index, group) in self.groups[..self.n_groups].iter_mut().enumerate() {
             let offset = index * LANES;
             let mut limits = [-1.0; LANES];
@@ -228,6 +234,7 @@ impl<I: Isa> Packet<I> {
         let mut enters = [0.0; WIDTH];
         enter.store(&mut enters);
         let base = self.stack.n;
+        self.toll.paid += left.count_ones() * groups.count_ones();
         while left != 0 {
             let child = left.trailing_zeros() as usize;
             left &= left - 1;
@@ -242,9 +249,15 @@ impl<I: Isa> Packet<I> {
                     rays[group] = touch as u16;
                 }
                 let n = touch.count_ones() as usize;
-                let stays =
-                    n > self.n_alone || (n > 0 && !self.stragglers.add(touch, entered, reference));
-                touching |= u32::from(stays) << group;
+                if n > self.n_alone {
+                    touching |= 1 << group;
+                    self.toll.spared += n as u32;
+                } else if n > 0 {
+                    let lost = self.stragglers.add(touch, entered, reference);
+                    if lost != 0 {
+                        self.groups[group].dismiss(lost);
+                    }
+                }
             }
             if touching != 0 {
                 if FAR || self.n_alone > 0 {
@@ -269,6 +282,7 @@ impl<I: Isa> Packet<I> {
     ) -> bool {
         let mut left = entry.groups;
         let mut is_changed = false;
+        self.toll.paid += left.count_ones() * block.n_triangles();
         while left != 0 {
             let index = left.trailing_zeros() as usize % GROUPS;
             left &= left - 1;
@@ -299,32 +313,36 @@ impl Stragglers {
     const NONE: Self =
         Self { n: [0; LANES], starts: [[Start { reference: 0, enter: 0.0 }; STARTS]; LANES] };
 
-    /// Notes a place for some rays, which may be none; `false` where one has too many already.
+    /// Notes a place for some rays; gives those that have too many already, who begin again at the
+    /// root.
     #[inline(always)]
-    fn add<F: Lanes>(&mut self, rays: u32, entered: F, reference: u32) -> bool {
+    fn add<F: Lanes>(&mut self, rays: u32, entered: F, reference: u32) -> u32 {
         let mut enters = [0.0; LANES];
         entered.store(&mut enters);
         let mut left = rays;
+        let mut lost = 0;
         while left != 0 {
             let lane = left.trailing_zeros() as usize;
             left &= left - 1;
-            let Some(start) = self.starts[lane].get_mut(usize::from(self.n[lane])) else {
-                return false;
-            };
-            *start = Start { reference, enter: enters[lane] };
+            match self.starts[lane].get_mut(usize::from(self.n[lane])) {
+                Some(start) => *start = Start { reference, enter: enters[lane] },
+                None => lost |= 1 << lane,
+            }
             self.n[lane] += 1;
         }
-        true
+        lost
     }
 
     /// Lets them wait for the stream; `first` is the place of the group in its batch.
     #[inline(always)]
-    fn hand_over(&mut self, first: usize, fleet: &mut Fleet) {
+    fn hand_over(&mut self, bvh: &WideBvh, first: usize, fleet: &mut Fleet) {
         for (lane, n) in self.n.iter_mut().enumerate() {
-            if *n > 0 {
-                fleet.push(first + lane, &self.starts[lane][..usize::from(*n)]);
-                *n = 0;
+            match self.starts[lane].get(..usize::from(*n)) {
+                Some([]) => {}
+                Some(starts) => fleet.push(first + lane, starts),
+                None => fleet.push(first + lane, &[bvh.start()]),
             }
+            *n = 0;
         }
     }
 }
