@@ -75,8 +75,10 @@ pub(super) fn toolbar_ui(
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             if !facts.start_shown {
-                let text = if TEXTS_FROM <= width(ui) { "Panel" } else { "" };
-                let panel = Button::selectable(facts.panel_shown, (Icon::Panel.atom(), text));
+                let panel = match TEXTS_FROM <= width(ui) {
+                    true => Button::selectable(facts.panel_shown, (Icon::Panel.atom(), "Panel")),
+                    false => Button::selectable(facts.panel_shown, Icon::Panel.atom()),
+                };
                 let help = facts.keys.hint("the panel with all settings", Action::TogglePanel);
                 if ui.add(panel).accessible_name("Panel").on_hover_text(help).clicked() {
                     chosen = Some(ToolbarChoice::Do(Action::TogglePanel));
@@ -239,8 +241,11 @@ fn button(
     enabled: bool,
     chosen: &mut Option<ToolbarChoice>,
 ) {
-    let shown = if TEXTS_FROM <= width(ui) { text } else { "" };
-    let button = Button::new((icon.atom(), shown)).frame_when_inactive(false).gap(5.0);
+    let button = match TEXTS_FROM <= width(ui) {
+        true => Button::new((icon.atom(), text)),
+        false => Button::new(icon.atom()),
+    };
+    let button = button.frame_when_inactive(false).gap(5.0);
     let response = ui.add_enabled(enabled, button).accessible_name(text);
     if response.on_hover_text(keys.hint(help, action)).clicked() {
         *chosen = Some(ToolbarChoice::Do(action));
