@@ -48,6 +48,18 @@ impl Source {
             Self::Gallery(name) => (*name).to_owned(),
         }
     }
+
+    /// Whether it is a mesh, whose scene is made up around it.
+    pub fn is_mesh(&self) -> bool {
+        match self {
+            Self::File(path) => has_ending(path, "obj"),
+            Self::Gallery(_) => false,
+        }
+    }
+}
+
+fn has_ending(path: &Path, ending: &str) -> bool {
+    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending))
 }
 
 /// A scene with everything that its files hold.
@@ -232,18 +244,16 @@ impl Opened {
             Source::File(path) => path,
         };
         let name = printable_path(path);
-        let has_ending =
-            |ending| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending));
-        let is_scene = has_ending("toml");
+        let is_scene = has_ending(path, "toml");
         let bytes = read_file(path, if is_scene { LARGEST_FILE } else { LARGEST_ASSET })?;
-        if bytes.starts_with(b"\x89PNG") || has_ending("png") {
+        if bytes.starts_with(b"\x89PNG") || has_ending(path, "png") {
             let snapshot = snapshot::read(&bytes, path)
                 .map_err(|error| LoadError::Snapshot { name: name.clone(), error })?;
             let mut opened = Self::scene(name, snapshot.scene, snapshot.folder);
             opened.snapshot = Some(snapshot.record);
             return Ok(opened);
         }
-        if has_ending("obj") {
+        if source.is_mesh() {
             return Self::mesh(name, path, &bytes, stop, told);
         }
         if !is_scene && str::from_utf8(&bytes).is_err() {

@@ -14,10 +14,12 @@ use crate::scene::description::SceneDescription;
 
 mod change;
 mod history;
+mod rebase;
 
 pub use change::{ChangeKind, change};
 
 use history::History;
+use rebase::with_edits;
 
 /// A scene with its past.
 #[derive(Clone, Debug)]
@@ -69,6 +71,15 @@ impl Document {
         self.checkpoint("edit", None);
         self.saved = description.clone();
         self.description = description;
+        self.checkpoint("reload", None);
+    }
+
+    /// Takes over what a scene that nobody wrote is now, such as the one around a mesh, beneath the
+    /// edits: every part that was edited stays. Can be undone.
+    pub fn rebase(&mut self, beneath: SceneDescription) {
+        self.checkpoint("edit", None);
+        self.description = with_edits(&self.saved, &self.description, &beneath);
+        self.saved = beneath;
         self.checkpoint("reload", None);
     }
 
