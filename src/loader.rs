@@ -4,6 +4,7 @@
 //! request first, and can be cancelled.
 
 use std::collections::HashMap;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -301,10 +302,15 @@ impl Opened {
             return Err(LoadError::Unframed { name, reach });
         }
         description = framing::scene_around(&file, Some(bounds));
+        let mut report = reading.report;
+        if path.file_name().and_then(OsStr::to_str).is_none() {
+            let why = "its name is no UTF-8, so that no saved scene or snapshot can find it";
+            report.push(format!("{name}: {why}; give it another name first"));
+        }
         let mut opened = Self::scene(name, scene_file::write(&description), folder.clone());
         opened.meshes = meshes;
         opened.mesh_files = reading.records;
-        opened.report = reading.report;
+        opened.report = report;
         Ok(opened)
     }
 }
