@@ -15,11 +15,13 @@ use crate::scene::description::SceneDescription;
 mod change;
 mod history;
 mod label;
+mod rebase;
 
 pub use change::{ChangeKind, change};
 
 use history::History;
 use label::edit_label;
+use rebase::with_edits;
 
 /// A scene with its past.
 #[derive(Clone, Debug)]
@@ -71,6 +73,15 @@ impl Document {
         self.checkpoint(None);
         self.saved = description.clone();
         self.description = description;
+        self.history.record(&self.description, None, |_, _| "reload".to_owned());
+    }
+
+    /// Takes over what a scene that nobody wrote is now, such as the one around a mesh, beneath the
+    /// edits: every part that was edited stays. Can be undone.
+    pub fn rebase(&mut self, beneath: SceneDescription) {
+        self.checkpoint(None);
+        self.description = with_edits(&self.saved, &self.description, &beneath);
+        self.saved = beneath;
         self.history.record(&self.description, None, |_, _| "reload".to_owned());
     }
 

@@ -1,4 +1,5 @@
-//! Batches of rays against all objects of a scene, one object after another.
+//! Batches of rays against all objects of a scene, branch by branch of the tree over them: each box
+//! selects from the rays that came to its branch.
 
 use std::cell::RefCell;
 use std::mem;

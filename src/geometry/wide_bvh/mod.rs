@@ -14,6 +14,7 @@ mod packet;
 mod sharing;
 mod single;
 mod stream;
+mod waiting;
 
 use std::cell::RefCell;
 use std::sync::atomic::AtomicBool;

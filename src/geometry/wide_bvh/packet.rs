@@ -13,17 +13,15 @@
 //! interval tests of packets.
 
 use crate::geometry::lanes::{Isa, Lanes};
-use crate::geometry::wide_bvh::descent::{STARTS, Start};
 use crate::geometry::wide_bvh::group::{Group, LANES};
 use crate::geometry::wide_bvh::sharing::{Share, Sharing, Toll};
 use crate::geometry::wide_bvh::stream::{self, Fleet, Take, TakeAny, TakeNearest};
+use crate::geometry::wide_bvh::waiting::{Entry, Stack, Stragglers};
 use crate::geometry::wide_bvh::{Block, LEAF, Node, WIDTH, WideBvh};
 use crate::math::RayBatch;
 
 /// Groups of a packet.
 pub(super) const GROUPS: usize = 4;
-/// Seven children a level may wait; the builder keeps the tree below 22 levels.
-const STACK: usize = 160;
 
 /// The nearest hit of every ray of a batch.
 #[inline(always)]
@@ -117,7 +115,7 @@ impl<I: Isa> Packet<I> {
             intervals: [None; 3],
             n_alone: 0,
             stragglers: Stragglers::NONE,
-            stack: Stack { entries: [Entry::NONE; STACK], n: 0 },
+            stack: Stack::EMPTY,
             toll: Toll::default(),
         }
     }
@@ -300,88 +298,5 @@ impl<I: Isa> Packet<I> {
             }
         }
         is_changed
-    }
-}
-
-/// Rays of a group that go on alone from some places.
-struct Stragglers {
-    n: [u8; LANES],
-    starts: [[Start; STARTS]; LANES],
-}
-
-impl Stragglers {
-    const NONE: Self =
-        Self { n: [0; LANES], starts: [[Start { reference: 0, enter: 0.0 }; STARTS]; LANES] };
-
-    /// Notes a place for some rays; gives those that have too many already, who begin again at the
-    /// root.
-    #[inline(always)]
-    fn add<F: Lanes>(&mut self, rays: u32, entered: F, reference: u32) -> u32 {
-        let mut enters = [0.0; LANES];
-        entered.store(&mut enters);
-        let mut left = rays;
-        let mut lost = 0;
-        while left != 0 {
-            let lane = left.trailing_zeros() as usize;
-            left &= left - 1;
-            match self.starts[lane].get_mut(usize::from(self.n[lane])) {
-                Some(start) => *start = Start { reference, enter: enters[lane] },
-                None => lost |= 1 << lane,
-            }
-            self.n[lane] += 1;
-        }
-        lost
-    }
-
-    /// Lets them wait for the stream; `first` is the place of the group in its batch.
-    #[inline(always)]
-    fn hand_over(&mut self, bvh: &WideBvh, first: usize, fleet: &mut Fleet) {
-        for (lane, n) in self.n.iter_mut().enumerate() {
-            match self.starts[lane].get(..usize::from(*n)) {
-                Some([]) => {}
-                Some(starts) => fleet.push(first + lane, starts),
-                None => fleet.push(first + lane, &[bvh.start()]),
-            }
-            *n = 0;
-        }
-    }
-}
-
-/// A place that waits, with the parameter at which it is entered, the groups that go there, and which
-/// of their rays.
-#[derive(Clone, Copy)]
-struct Entry {
-    reference: u32,
-    enter: f32,
-    groups: u32,
-    rays: [u16; GROUPS],
-}
-
-impl Entry {
-    const NONE: Self = Self { reference: 0, enter: 0.0, groups: 0, rays: [0; GROUPS] };
-}
-
-struct Stack {
-    entries: [Entry; STACK],
-    n: usize,
-}
-
-impl Stack {
-    /// Keeps what lies above `base` in order, the nearest on top.
-    #[inline(always)]
-    fn insert(&mut self, base: usize, entry: Entry) {
-        let mut place = self.n;
-        while place > base && self.entries[place - 1].enter < entry.enter {
-            self.entries[place] = self.entries[place - 1];
-            place -= 1;
-        }
-        self.entries[place] = entry;
-        self.n += 1;
-    }
-
-    #[inline(always)]
-    fn pop(&mut self) -> Option<Entry> {
-        self.n = self.n.checked_sub(1)?;
-        Some(self.entries[self.n])
     }
 }

@@ -95,6 +95,35 @@ fn edits_stay_where_only_a_mesh_is_new() {
     assert!(document.is_dirty(), "the edit counts as saved");
 }
 
+/// A mesh opened alone has its scene made up around it: what was edited stays, the rest follows.
+#[test]
+fn edits_stay_where_a_mesh_opened_alone_grows() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.obj");
+    std::fs::write(&path, TRIANGLE).unwrap();
+    let mut harness = window(&path, SIZE);
+    let first = harness.state().document.description.clone();
+    let document = &mut harness.state_mut().document;
+    document.description.camera.eye[0] += 0.5;
+    document.description.tone_mapping.exposure = 1.0;
+    harness.run_steps(3);
+    let edited = harness.state().document.description.clone();
+    std::fs::write(&path, format!("{TRIANGLE}v 0 -3 9\nf 1 2 4\n")).unwrap();
+    wait_until(&mut harness, |app| {
+        app.document.description.objects[1].point != first.objects[1].point
+    });
+    harness.run_steps(3);
+    let app = harness.state();
+    let now = &app.document.description;
+    assert_eq!(now.camera, edited.camera, "the camera was moved by somebody");
+    assert_eq!(now.tone_mapping.exposure, 1.0, "so was the exposure");
+    assert_eq!(now.objects[1].point.unwrap()[1], -3.0, "the ground is where the mesh stands");
+    assert_ne!(now.lights, first.lights, "the light does not reach it");
+    assert!(app.document.is_dirty(), "the edits count as saved");
+    assert_ne!(app.home_camera, first.camera, "home is before the mesh as it was");
+    assert!(has_said(&harness, "changed a file of the scene"), "it is not told");
+}
+
 #[test]
 fn edits_that_a_changed_scene_replaces_are_one_undo_away_and_it_says_so() {
     let folder = tempfile::tempdir().unwrap();
