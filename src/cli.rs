@@ -11,6 +11,8 @@ use clap::{Args, Parser, Subcommand};
 use crate::geometry::AcceleratorKind;
 use crate::io::scene_file::Override;
 use crate::io::{printable, printable_ends};
+use crate::session::admit::{admit_threads, threads_that_fit};
+use crate::threads;
 
 mod info;
 mod progress;
@@ -146,18 +148,40 @@ pub fn run(command: &Command) -> ExitCode {
     }
 }
 
+/// The threads of a command: as many as were asked for, or none. Where nobody asks: one a processor,
+/// or as many as there is room for, and the one that there is where there is room for no other.
+fn pool(name: &'static str, n_wanted: Option<u32>) -> anyhow::Result<rayon::ThreadPool> {
+    let n_threads = n_wanted.map_or_else(threads::available, |n| n as usize);
+    let n_fit = threads_that_fit(n_threads);
+    Ok(match n_wanted {
+        Some(2..) => {
+            admit_threads(n_threads)?;
+            threads::pool(name, n_threads)?
+        }
+        Some(_) | None if n_fit == 0 => threads::pool_of_caller()?,
+        Some(_) => threads::pool(name, 1)?,
+        None => threads::pool_of_at_most(name, n_fit)?,
+    })
+}
+
 /// Shows what is wrong with a command line, or the help that it asks for. What it repeats of the
 /// command line cannot reach the terminal as an escape sequence.
 pub fn explain(error: &clap::Error) -> ExitCode {
     let text = error.to_string();
     let safe: Vec<String> = text.lines().map(printable_ends).collect();
-    // Where nobody is left to be told, the status still says it.
-    if text.lines().eq(safe.iter()) {
-        let _ = error.print();
+    let told = if text.lines().eq(safe.iter()) {
+        error.print()
     } else {
-        let _ = writeln!(stderr(), "{}", safe.join("\n"));
+        writeln!(stderr(), "{}", safe.join("\n"))
+    };
+    // Where nobody is left to be told, the status still says it: of help that was asked for, too.
+    match (told, error.exit_code()) {
+        (Err(failure), 0) => {
+            tell("error", &format!("the standard output: {failure}"));
+            ExitCode::FAILURE
+        }
+        (_, status) => ExitCode::from(u8::try_from(status).unwrap_or(2)),
     }
-    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
 }
 
 /// The one place that prints results; a result that reaches nobody is an error.

@@ -4,6 +4,7 @@
 //! request first, and can be cancelled.
 
 use std::collections::HashMap;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -48,6 +49,18 @@ impl Source {
             Self::Gallery(name) => (*name).to_owned(),
         }
     }
+
+    /// Whether it is a mesh, whose scene is made up around it.
+    pub fn is_mesh(&self) -> bool {
+        match self {
+            Self::File(path) => has_ending(path, "obj"),
+            Self::Gallery(_) => false,
+        }
+    }
+}
+
+fn has_ending(path: &Path, ending: &str) -> bool {
+    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending))
 }
 
 /// A scene with everything that its files hold.
@@ -232,18 +245,16 @@ impl Opened {
             Source::File(path) => path,
         };
         let name = printable_path(path);
-        let has_ending =
-            |ending| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending));
-        let is_scene = has_ending("toml");
+        let is_scene = has_ending(path, "toml");
         let bytes = read_file(path, if is_scene { LARGEST_FILE } else { LARGEST_ASSET })?;
-        if bytes.starts_with(b"\x89PNG") || has_ending("png") {
+        if bytes.starts_with(b"\x89PNG") || has_ending(path, "png") {
             let snapshot = snapshot::read(&bytes, path)
                 .map_err(|error| LoadError::Snapshot { name: name.clone(), error })?;
             let mut opened = Self::scene(name, snapshot.scene, snapshot.folder);
             opened.snapshot = Some(snapshot.record);
             return Ok(opened);
         }
-        if has_ending("obj") {
+        if source.is_mesh() {
             return Self::mesh(name, path, &bytes, stop, told);
         }
         if !is_scene && str::from_utf8(&bytes).is_err() {
@@ -291,10 +302,15 @@ impl Opened {
             return Err(LoadError::Unframed { name, reach });
         }
         description = framing::scene_around(&file, Some(bounds));
+        let mut report = reading.report;
+        if path.file_name().and_then(OsStr::to_str).is_none() {
+            let why = "its name is no UTF-8, so that no saved scene or snapshot can find it";
+            report.push(format!("{name}: {why}; give it another name first"));
+        }
         let mut opened = Self::scene(name, scene_file::write(&description), folder.clone());
         opened.meshes = meshes;
         opened.mesh_files = reading.records;
-        opened.report = reading.report;
+        opened.report = report;
         Ok(opened)
     }
 }

@@ -1,8 +1,12 @@
 //! The one way to start threads: named, and in pools of their own.
 
 use std::any::Any;
+use std::hint::black_box;
 use std::io;
 use std::thread::{Builder, JoinHandle};
+
+/// Bytes of stack that every thread has.
+pub const STACK: usize = 2 << 20;
 
 /// Starts a named thread.
 ///
@@ -12,27 +16,35 @@ pub fn spawn<T: Send + 'static>(
     name: &str,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> io::Result<JoinHandle<T>> {
-    Builder::new().name(name.to_owned()).spawn(work)
+    Builder::new().name(name.to_owned()).stack_size(STACK).spawn(work)
 }
 
-/// A pool of `n_threads` (at least 1) named threads; never rayon's global one.
+/// A pool of `n_threads` (at least 1) named threads; never rayon's global one. Each has taken what
+/// it needs to begin with, so that what is free afterwards is free.
 ///
 /// # Errors
 /// When the system has no thread left.
 pub fn pool(name: &'static str, n_threads: usize) -> io::Result<rayon::ThreadPool> {
-    started(n_threads, builder(name, n_threads))
+    let pool = started(n_threads, builder(name, n_threads))?;
+    // An allocator may set much aside at a thread's first request.
+    pool.broadcast(|_| drop(black_box(Box::new(0_u8))));
+    Ok(pool)
 }
 
-/// The same with as many threads as somebody asked for. Where nobody did: one a processor, or fewer
-/// where the system has not so many left.
+/// [`pool`] of `n_threads`, or of fewer where the system has not so many left.
 ///
 /// # Errors
-/// When the system has no thread left, or fewer than were asked for.
-pub fn pool_of(name: &'static str, n_wanted: Option<u32>) -> io::Result<rayon::ThreadPool> {
-    match n_wanted {
-        Some(n) => pool(name, n as usize),
-        None => or_fewer(available(), |n| pool(name, n)),
-    }
+/// When the system has no thread left.
+pub fn pool_of_at_most(name: &'static str, n_threads: usize) -> io::Result<rayon::ThreadPool> {
+    or_fewer(n_threads, |n| pool(name, n))
+}
+
+/// A pool that is the thread that asks for it, and takes nothing; no thread may do so twice.
+///
+/// # Errors
+/// When it has done so.
+pub fn pool_of_caller() -> io::Result<rayon::ThreadPool> {
+    started(1, rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread())
 }
 
 /// [`pool`] at lower priority where the system has one, so that the desktop stays usable.
@@ -46,6 +58,7 @@ pub fn background_pool(name: &'static str, n_threads: usize) -> io::Result<rayon
 fn builder(name: &'static str, n_threads: usize) -> rayon::ThreadPoolBuilder {
     rayon::ThreadPoolBuilder::new()
         .num_threads(n_threads.max(1))
+        .stack_size(STACK)
         .thread_name(move |index| format!("{name}-{index}"))
 }
 

@@ -4,18 +4,17 @@ use glam::Vec3;
 use serde_json::json;
 
 use crate::cli::render::{open, world_of};
-use crate::cli::{Failure, InfoArguments, print, print_json, warn};
+use crate::cli::{Failure, InfoArguments, pool, print, print_json, warn};
 use crate::geometry::AcceleratorKind;
 use crate::loader::Loaded;
 use crate::scene::assets::MeshKey;
-use crate::threads;
 
 pub(super) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
     let mut loaded = open(&arguments.file, &[])?;
     warn(&loaded.report, false);
     // No picture is made, and none has to fit into memory.
     (loaded.description.render.width, loaded.description.render.height) = (1, 1);
-    let pool = threads::pool_of("build", None)?;
+    let pool = pool("build", None)?;
     let world = world_of(&loaded, AcceleratorKind::default(), &pool)?;
     let counts = Counts::of(&loaded);
     let tree = world.geometry.statistics();

@@ -8,7 +8,7 @@ use std::time::Instant;
 use anyhow::anyhow;
 
 use crate::cli::progress::Progress;
-use crate::cli::{Failure, RenderArguments, print_json, warn};
+use crate::cli::{Failure, RenderArguments, pool, print_json, warn};
 use crate::geometry::AcceleratorKind;
 use crate::io::output::{OutputFormat, check_writable, keep_elsewhere, replace_file};
 use crate::io::scene_file::Override;
@@ -20,7 +20,6 @@ use crate::scene::resolve;
 use crate::session::Goal;
 use crate::session::admit::admit;
 use crate::session::develop::{Developed, develop, encode};
-use crate::threads;
 
 /// Bytes without which even a small scene is not begun.
 const LEAST: u64 = 16 << 20;
@@ -40,7 +39,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     crash::rehearse();
     let samples = loaded.description.render.samples;
     let start = Instant::now();
-    let pool = threads::pool_of("render", arguments.threads)?;
+    let pool = pool("render", arguments.threads)?;
     let world = world_of(&loaded, arguments.accelerator, &pool)?;
     let goal = Goal { samples, seconds: arguments.time, noise_percent: arguments.noise };
     let mut progress = Progress::new(goal, arguments.quiet);

@@ -7,7 +7,7 @@ use anyhow::anyhow;
 
 use crate::cli::progress::Progress;
 use crate::cli::render::{not_finite, open, world_of};
-use crate::cli::{Failure, VerifyArguments, print, warn};
+use crate::cli::{Failure, VerifyArguments, pool, print, warn};
 use crate::geometry::AcceleratorKind;
 use crate::io::files::read_file;
 use crate::io::folder::LARGEST_ASSET;
@@ -15,7 +15,6 @@ use crate::io::snapshot::{SnapshotError, read_pixels};
 use crate::io::{excerpt, printable_path};
 use crate::session::Goal;
 use crate::session::develop::{Developed, develop};
-use crate::threads;
 use crate::tone_mapping::srgb_bytes;
 
 pub(super) fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
@@ -46,7 +45,7 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
         }
         Err(error) => return Err(anyhow!("{shown}: {error}").into()),
     };
-    let pool = threads::pool_of("render", arguments.threads)?;
+    let pool = pool("render", arguments.threads)?;
     let world = world_of(&loaded, AcceleratorKind::default(), &pool)?;
     let goal = Goal { samples: record.samples, seconds: None, noise_percent: None };
     let mut progress = Progress::new(goal, arguments.quiet);

@@ -41,7 +41,13 @@ impl History {
     }
 
     /// Makes a step to `now`, or lengthens the newest where the gesture is the same.
-    pub(super) fn record(&mut self, now: &SceneDescription, label: &str, gesture: Option<u64>) {
+    /// `name` says what a new step is called, from what was there to what is.
+    pub(super) fn record(
+        &mut self,
+        now: &SceneDescription,
+        gesture: Option<u64>,
+        name: impl FnOnce(&SceneDescription, &SceneDescription) -> String,
+    ) {
         if *now == self.present {
             return;
         }
@@ -55,7 +61,8 @@ impl History {
             }
             return;
         }
-        self.undo.push_back(Step { label: label.into(), gesture, other: before });
+        let label = name(&before, now);
+        self.undo.push_back(Step { label, gesture, other: before });
         self.is_open = true;
         self.forget();
     }
@@ -112,7 +119,7 @@ mod tests {
         let mut history = History::new(scene.clone());
         for seed in 1..=2 * MOST_STEPS as u32 {
             scene.render.seed = seed;
-            history.record(&scene, "seed", None);
+            history.record(&scene, None, |_, _| "seed".to_owned());
         }
         let mut n_undone = 0;
         while history.undo().is_some() {

@@ -14,10 +14,14 @@ use crate::scene::description::SceneDescription;
 
 mod change;
 mod history;
+mod label;
+mod rebase;
 
 pub use change::{ChangeKind, change};
 
 use history::History;
+use label::edit_label;
+use rebase::with_edits;
 
 /// A scene with its past.
 #[derive(Clone, Debug)]
@@ -66,22 +70,31 @@ impl Document {
 
     /// Takes over what its file holds now, after another program changed it. Can be undone.
     pub fn reload(&mut self, description: SceneDescription) {
-        self.checkpoint("edit", None);
+        self.checkpoint(None);
         self.saved = description.clone();
         self.description = description;
-        self.checkpoint("reload", None);
+        self.history.record(&self.description, None, |_, _| "reload".to_owned());
+    }
+
+    /// Takes over what a scene that nobody wrote is now, such as the one around a mesh, beneath the
+    /// edits: every part that was edited stays. Can be undone.
+    pub fn rebase(&mut self, beneath: SceneDescription) {
+        self.checkpoint(None);
+        self.description = with_edits(&self.saved, &self.description, &beneath);
+        self.saved = beneath;
+        self.history.record(&self.description, None, |_, _| "reload".to_owned());
     }
 
     /// Makes one step of undo of all edits since the last, if there are any. Edits with the same
     /// `gesture`, such as those of one drag, become one step, as long as nothing else comes
-    /// between. `label` says in the interface what undo would undo.
-    pub fn checkpoint(&mut self, label: &str, gesture: Option<u64>) {
-        self.history.record(&self.description, label, gesture);
+    /// between. What undo would undo is named after what the first of them changed.
+    pub fn checkpoint(&mut self, gesture: Option<u64>) {
+        self.history.record(&self.description, gesture, edit_label);
     }
 
     /// Goes back one step, and says which. Edits without a checkpoint are a step of their own.
     pub fn undo(&mut self) -> Option<String> {
-        self.checkpoint("edit", None);
+        self.checkpoint(None);
         let label = self.history.undo()?;
         self.description = self.history.present().clone();
         Some(label)
@@ -89,7 +102,7 @@ impl Document {
 
     /// Goes forward one step that was undone, and says which.
     pub fn redo(&mut self) -> Option<String> {
-        self.checkpoint("edit", None);
+        self.checkpoint(None);
         let label = self.history.redo()?;
         self.description = self.history.present().clone();
         Some(label)
@@ -137,6 +150,9 @@ mod tests {
         camera = { eye = [0, 1, 5], target = [0, 1, 0] }\n\
         [[objects]]\nname = 'my ball'\ntype = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n";
 
+    /// What undo calls a change of the radius.
+    const RADIUS: &str = "object my ball radius";
+
     fn document() -> Document {
         Document::new(parse(TEXT, &[]).unwrap(), Some("a.toml".into()))
     }
@@ -147,7 +163,7 @@ mod tests {
 
     fn set_radius(document: &mut Document, radius: f64, gesture: Option<u64>) {
         document.description.objects[0].radius = Some(radius);
-        document.checkpoint("radius", gesture);
+        document.checkpoint(gesture);
     }
 
     #[test]
@@ -157,12 +173,12 @@ mod tests {
             set_radius(&mut document, 1.0 + f64::from(step), Some(7));
         }
         set_radius(&mut document, 20.0, Some(8));
-        assert_eq!(document.undo().as_deref(), Some("radius"), "the second drag");
+        assert_eq!(document.undo().as_deref(), Some(RADIUS), "the second drag");
         assert_eq!(radius(&document), Some(11.0), "after the first drag");
-        assert_eq!(document.undo().as_deref(), Some("radius"), "the first drag");
+        assert_eq!(document.undo().as_deref(), Some(RADIUS), "the first drag");
         assert_eq!(radius(&document), Some(1.0), "at the start");
         assert_eq!(document.undo(), None, "nothing is left");
-        assert_eq!(document.redo().as_deref(), Some("radius"), "the first drag again");
+        assert_eq!(document.redo().as_deref(), Some(RADIUS), "the first drag again");
         assert_eq!(radius(&document), Some(11.0), "after the first drag again");
     }
 
@@ -199,8 +215,8 @@ mod tests {
         let mut document = document();
         set_radius(&mut document, 2.0, None);
         document.undo();
-        document.checkpoint("nothing", None);
-        assert_eq!(document.redo_label(), Some("radius"), "before an edit");
+        document.checkpoint(None);
+        assert_eq!(document.redo_label(), Some(RADIUS), "before an edit");
         set_radius(&mut document, 3.0, None);
         assert_eq!(document.redo_label(), None, "after an edit");
         assert_eq!(document.redo(), None, "redo after an edit");

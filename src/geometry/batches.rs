@@ -1,25 +1,28 @@
-//! Batches of rays against all objects of a scene, one object after another.
+//! Batches of rays against all objects of a scene, branch by branch of the tree over them: each box
+//! selects from the rays that came to its branch.
 
 use std::cell::RefCell;
+use std::mem;
 
 use crate::color::Rgb;
-use crate::geometry::kd_tree::Walk;
 use crate::geometry::nearest::{Hit, Nearest, Search};
+use crate::geometry::object_tree::{Branch, What};
 use crate::geometry::select::Selection;
-use crate::geometry::{AcceleratorKind, Geometry, Instance};
-use crate::math::{Aabb, PrimitiveId, Ray, RayBatch};
+use crate::geometry::{Geometry, Instance};
+use crate::math::{Ray, RayBatch};
 
-/// What a thread keeps from one batch to the next.
+/// What a thread keeps from one batch to the next, for each level of the tree over objects.
 #[derive(Default)]
 struct Work {
     selection: Selection,
+    order: Vec<(f32, u32)>,
     /// Of the selected rays.
     nearest: Vec<Nearest>,
     blocked: Vec<bool>,
 }
 
 thread_local! {
-    static WORK: RefCell<Work> = RefCell::default();
+    static WORK: RefCell<Vec<Work>> = RefCell::default();
 }
 
 impl Geometry {
@@ -27,36 +30,56 @@ impl Geometry {
     pub fn intersect(&self, rays: &RayBatch, nearest: &mut Vec<Nearest>) {
         nearest.clear();
         nearest.extend(rays.t_max.iter().map(|t| Nearest::new(*t)));
-        WORK.with_borrow_mut(|Work { selection, nearest: theirs, .. }| {
-            selection.begin();
-            for id in &self.listed {
-                let instance = &self.instances[*id as usize];
-                let Some(bounds) = self.box_of(instance) else {
-                    instance.intersect_batch(rays, *id, self.kind, nearest);
-                    selection.limits.clear();
-                    continue;
-                };
-                if selection.limits.is_empty() {
-                    selection.limits.extend(nearest.iter().map(Nearest::t));
+        for id in &self.listed {
+            self.instances[*id as usize].intersect_batch(rays, *id, self.kind, nearest);
+        }
+        self.with_tree(|tree, works| self.nearest_among(tree, rays, nearest, works));
+    }
+
+    /// Calls with the tree over objects, where there is one, and memory for each of its levels.
+    fn with_tree(&self, call: impl FnOnce(&Branch, &mut [Work])) {
+        let Some(tree) = &self.tree else { return };
+        WORK.with_borrow_mut(|works| {
+            let n_levels = tree.n_levels();
+            if works.len() < n_levels {
+                works.resize_with(n_levels, Work::default);
+            }
+            call(tree, works);
+        });
+    }
+
+    /// What each ray meets first of a branch, or has met before.
+    fn nearest_among(
+        &self,
+        branch: &Branch,
+        rays: &RayBatch,
+        nearest: &mut [Nearest],
+        works: &mut [Work],
+    ) {
+        let Some((Work { selection, order, nearest: theirs, .. }, deeper)) =
+            works.split_first_mut()
+        else {
+            unreachable!("there is memory for every level");
+        };
+        selection.begin(nearest.iter().map(Nearest::t));
+        for member in branch.in_order(rays, order) {
+            if !selection.select(rays, &member.bounds) {
+                continue;
+            }
+            theirs.clear();
+            theirs.extend(selection.places.iter().map(|place| nearest[*place as usize]));
+            match &member.what {
+                What::Object(id) => {
+                    let instance = &self.instances[*id as usize];
+                    instance.intersect_batch(&selection.rays, *id, self.kind, theirs);
                 }
-                if !selection.select(rays, &bounds) {
-                    continue;
-                }
-                theirs.clear();
-                theirs.extend(selection.places.iter().map(|place| nearest[*place as usize]));
-                instance.intersect_batch(&selection.rays, *id, self.kind, theirs);
-                for (place, theirs) in selection.places.iter().zip(theirs.iter()) {
-                    nearest[*place as usize] = *theirs;
-                    selection.limits[*place as usize] = theirs.t();
+                What::Branch(branch) => {
+                    self.nearest_among(branch, &selection.rays, theirs, deeper);
                 }
             }
-        });
-        if self.tree.is_some() {
-            for (index, nearest) in nearest.iter_mut().enumerate() {
-                let ray = rays.ray(index);
-                let mut search = Search::from(&ray, *nearest);
-                self.collect_from_tree(&ray, |_| true, &mut search);
-                *nearest = search.nearest;
+            for (place, theirs) in selection.places.iter().zip(theirs.iter()) {
+                nearest[*place as usize] = *theirs;
+                selection.limits[*place as usize] = theirs.t();
             }
         }
     }
@@ -84,6 +107,7 @@ impl Geometry {
         let mut is_met = blocked.clone();
         self.occluded_by(rays, is_clear, &mut is_met);
         shares.clear();
+        let mut hits = Vec::new();
         shares.extend(blocked.iter().enumerate().map(|(i, is_blocked)| {
             if *is_blocked {
                 return Rgb::ZERO;
@@ -92,18 +116,44 @@ impl Geometry {
                 return Rgb::ONE;
             }
             let ray = rays.ray(i);
+            let mut search = Search::for_all(&ray, mem::take(&mut hits));
+            self.visit(&ray, is_clear, &mut || (), |id, instance| {
+                instance.intersect(&ray, id, self.kind, &mut search);
+                ray.t_max
+            });
+            hits = search.into_all();
             let mut share = Rgb::ONE;
-            let mut after = (0.0, PrimitiveId::NONE);
-            while let Some(hit) = self.next_hit(&ray, after, is_clear) {
-                let Some(factor) = clear(hit) else { return Rgb::ZERO };
+            for hit in &hits {
+                let Some(factor) = clear(*hit) else { return Rgb::ZERO };
                 share *= factor;
                 if share == Rgb::ZERO {
-                    return share;
+                    break;
                 }
-                after = (hit.t, hit.id);
             }
             share
         }));
+    }
+
+    /// Hands every object to take that a ray may meet to `visit`, about as the ray comes to them.
+    /// `visit` returns the parameter up to which the ray is still of interest; `enter` is told of
+    /// every box.
+    pub(super) fn visit(
+        &self,
+        ray: &Ray,
+        take: impl Fn(u32) -> bool,
+        enter: &mut impl FnMut(),
+        mut visit: impl FnMut(u32, &Instance) -> f32,
+    ) {
+        let mut ray = *ray;
+        let mut visit = |id: u32, t_max: f32| {
+            if take(id) { visit(id, &self.instances[id as usize]) } else { t_max }
+        };
+        for id in &self.listed {
+            ray.t_max = visit(*id, ray.t_max);
+        }
+        if let Some(tree) = &self.tree {
+            tree.walk(&mut ray, enter, &mut visit);
+        }
     }
 
     /// Whether any of the objects to take lies between the ends of each ray; those already blocked are
@@ -114,97 +164,51 @@ impl Geometry {
         take: impl Fn(u32) -> bool + Copy,
         blocked: &mut [bool],
     ) {
-        WORK.with_borrow_mut(|Work { selection, blocked: theirs, .. }| {
-            selection.begin();
-            for id in self.listed.iter().filter(|id| take(**id)) {
-                let instance = &self.instances[*id as usize];
-                let Some(bounds) = self.box_of(instance) else {
-                    instance.occluded_batch(rays, *id, self.kind, blocked);
-                    selection.limits.clear();
-                    continue;
-                };
-                if selection.limits.is_empty() {
-                    let limit = |(is_blocked, t_max): (&bool, &f32)| {
-                        if *is_blocked { -1.0 } else { *t_max }
-                    };
-                    selection.limits.extend(blocked.iter().zip(&rays.t_max).map(limit));
-                }
-                if !selection.select(rays, &bounds) {
-                    continue;
-                }
-                theirs.clear();
-                theirs.resize(selection.places.len(), false);
-                instance.occluded_batch(&selection.rays, *id, self.kind, theirs);
-                for (place, is_blocked) in selection.places.iter().zip(theirs.iter()) {
-                    if *is_blocked {
-                        blocked[*place as usize] = true;
-                        selection.limits[*place as usize] = -1.0;
-                    }
-                }
-            }
-        });
-        if self.tree.is_some() {
-            for (index, blocked) in blocked.iter_mut().enumerate() {
-                *blocked = *blocked || self.occluded_by_tree(&rays.ray(index), take);
-            }
+        for id in self.listed.iter().filter(|id| take(**id)) {
+            self.instances[*id as usize].occluded_batch(rays, *id, self.kind, blocked);
         }
+        self.with_tree(|tree, works| self.occluded_among(tree, rays, take, blocked, works));
     }
 
-    /// What rays are held against before an object. The oracle does without, and so do one or two
-    /// objects, whose own trees begin with a box anyway.
-    pub(super) fn box_of(&self, instance: &Instance) -> Option<Aabb> {
-        const FEW: usize = 2;
-        if self.listed.len() <= FEW {
-            return None;
-        }
-        match self.kind {
-            AcceleratorKind::WideBvh | AcceleratorKind::KdTree | AcceleratorKind::KdMidpoint => {
-                instance.reach()
-            }
-            AcceleratorKind::BruteForce => None,
-        }
-    }
-
-    /// The first hit after `after` in the order of distance, then primitive.
-    fn next_hit(
+    /// [`Geometry::occluded_by`] what a branch holds.
+    fn occluded_among(
         &self,
-        ray: &Ray,
-        after: (f32, PrimitiveId),
-        take: impl Fn(u32) -> bool,
-    ) -> Option<Hit> {
-        let mut search = Search::after(ray, after);
-        self.collect(ray, take, &mut search);
-        search.nearest.hit()
-    }
-
-    fn collect(&self, ray: &Ray, take: impl Fn(u32) -> bool, search: &mut Search) {
-        for id in self.listed.iter().copied().filter(|id| take(*id)) {
-            self.instances[id as usize].intersect(ray, id, self.kind, search);
-        }
-        self.collect_from_tree(ray, take, search);
-    }
-
-    fn collect_from_tree(&self, ray: &Ray, take: impl Fn(u32) -> bool, search: &mut Search) {
-        let Some(tree) = &self.tree else { return };
-        let clipped = Ray { t_max: search.nearest.t(), ..*ray };
-        let Some(walk) = Walk::new(&clipped, &tree.bounds) else { return };
-        tree.walk(&walk, |range| {
-            for id in tree.items[range].iter().copied().filter(|id| take(*id)) {
-                self.instances[id as usize].intersect(ray, id, self.kind, search);
+        branch: &Branch,
+        rays: &RayBatch,
+        take: impl Fn(u32) -> bool + Copy,
+        blocked: &mut [bool],
+        works: &mut [Work],
+    ) {
+        let Some((Work { selection, order, blocked: theirs, .. }, deeper)) =
+            works.split_first_mut()
+        else {
+            unreachable!("there is memory for every level");
+        };
+        let limit = |(is_blocked, t_max): (&bool, &f32)| if *is_blocked { -1.0 } else { *t_max };
+        selection.begin(blocked.iter().zip(&rays.t_max).map(limit));
+        for member in branch.in_order(rays, order) {
+            if matches!(member.what, What::Object(id) if !take(id))
+                || !selection.select(rays, &member.bounds)
+            {
+                continue;
             }
-            search.nearest.t()
-        });
-    }
-
-    fn occluded_by_tree(&self, ray: &Ray, take: impl Fn(u32) -> bool) -> bool {
-        let blocks = |id: u32| take(id) && self.instances[id as usize].occluded(ray, id, self.kind);
-        let Some(tree) = &self.tree else { return false };
-        let Some(walk) = Walk::new(ray, &tree.bounds) else { return false };
-        let mut is_blocked = false;
-        tree.walk(&walk, |range| {
-            is_blocked |= tree.items[range].iter().any(|id| blocks(*id));
-            if is_blocked { -1.0 } else { ray.t_max }
-        });
-        is_blocked
+            theirs.clear();
+            theirs.resize(selection.places.len(), false);
+            match &member.what {
+                What::Object(id) => {
+                    let instance = &self.instances[*id as usize];
+                    instance.occluded_batch(&selection.rays, *id, self.kind, theirs);
+                }
+                What::Branch(branch) => {
+                    self.occluded_among(branch, &selection.rays, take, theirs, deeper);
+                }
+            }
+            for (place, is_blocked) in selection.places.iter().zip(theirs.iter()) {
+                if *is_blocked {
+                    blocked[*place as usize] = true;
+                    selection.limits[*place as usize] = -1.0;
+                }
+            }
+        }
     }
 }

@@ -3,7 +3,6 @@
 //! The counts are those of a single ray in portable arithmetic, so that they are the same on every
 //! machine; packets share part of the work.
 
-use crate::geometry::kd_tree::Walk;
 use crate::geometry::nearest::Search;
 use crate::geometry::{Geometry, Hit};
 use crate::math::Ray;
@@ -29,35 +28,17 @@ impl Geometry {
     pub fn intersect_counted(&self, ray: &Ray) -> (Option<Hit>, TraversalCost) {
         let mut search = Search::new(ray);
         let mut cost = TraversalCost::default();
-        for id in &self.listed {
-            let instance = &self.instances[*id as usize];
-            if let Some(bounds) = self.box_of(instance) {
-                cost.n_nodes += 1;
-                let clipped = Ray { t_max: search.nearest.t(), ..*ray };
-                if Walk::new(&clipped, &bounds).is_none() {
-                    continue;
-                }
-            }
-            instance.intersect_counted(ray, *id, self.kind, &mut search, &mut cost);
-        }
-        let clipped = Ray { t_max: search.nearest.t(), ..*ray };
-        if let Some(tree) = &self.tree
-            && let Some(walk) = Walk::new(&clipped, &tree.bounds)
-        {
-            let mut n_entered = 0;
-            tree.walk_counting(
-                &walk,
-                || n_entered += 1,
-                |range| {
-                    for id in &tree.items[range] {
-                        let instance = &self.instances[*id as usize];
-                        instance.intersect_counted(ray, *id, self.kind, &mut search, &mut cost);
-                    }
-                    search.nearest.t()
-                },
-            );
-            cost.n_nodes += n_entered;
-        }
+        let mut n_boxes = 0;
+        self.visit(
+            ray,
+            |_| true,
+            &mut || n_boxes += 1,
+            |id, instance| {
+                instance.intersect_counted(ray, id, self.kind, &mut search, &mut cost);
+                search.nearest.t()
+            },
+        );
+        cost.n_nodes += n_boxes;
         (search.nearest.hit(), cost)
     }
 }

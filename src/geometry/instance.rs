@@ -96,28 +96,6 @@ impl Instance {
         }
     }
 
-    /// Whether the object lies between the ends of a ray of the world.
-    pub(super) fn occluded(&self, ray: &Ray, object: u32, kind: AcceleratorKind) -> bool {
-        match &self.shape {
-            Shape::Mesh(mesh) => {
-                let mut is_blocked = false;
-                self.with_object_ray(ray, mesh, |ray| {
-                    is_blocked = mesh.tree(kind).occluded(ray, object);
-                });
-                is_blocked
-            }
-            Shape::Sphere { .. }
-            | Shape::Plane { .. }
-            | Shape::Box { .. }
-            | Shape::Cone { .. }
-            | Shape::Cylinder { .. } => {
-                let mut search = Search::new(ray);
-                self.intersect(ray, object, kind, &mut search);
-                search.nearest.is_hit()
-            }
-        }
-    }
-
     /// [`Instance::intersect`] for many rays, one `nearest` each.
     pub(super) fn intersect_batch(
         &self,
@@ -149,7 +127,7 @@ impl Instance {
         }
     }
 
-    /// [`Instance::occluded`] for many rays; those already blocked are left out.
+    /// Whether the object lies between the ends of each ray; those already blocked are left out.
     pub(super) fn occluded_batch(
         &self,
         rays: &RayBatch,

@@ -166,11 +166,8 @@ impl MeshTree {
         cost.n_primitives += n_triangles;
     }
 
-    /// Whether anything but the ray's source lies between its ends.
-    pub(super) fn occluded(&self, ray: &Ray, object: u32) -> bool {
-        if let Structure::WideBvh(bvh) = &self.structure {
-            return bvh.occluded(ray, object);
-        }
+    /// Whether anything but the ray's source lies between its ends: without wide registers.
+    fn occluded(&self, ray: &Ray, object: u32) -> bool {
         let sheared = ShearedRay::new(ray);
         let mut probe = Search::new(ray);
         self.visit(ray, |triangles| {
@@ -206,7 +203,8 @@ impl MeshTree {
         }
     }
 
-    /// [`MeshTree::occluded`] for many rays; those already blocked are left out.
+    /// Whether anything but its source lies between the ends of each ray; those already blocked are left
+    /// out.
     pub(super) fn occluded_batch(&self, rays: &RayBatch, object: u32, blocked: &mut [bool]) {
         if let Structure::WideBvh(bvh) = &self.structure {
             return bvh.occluded_batch(rays, object, blocked);

@@ -6,6 +6,7 @@
 //! gives the same answers to the last bit: of equal distances the lowest primitive wins.
 
 mod batches;
+mod binned;
 mod cost;
 mod crossings;
 mod extent;
@@ -16,6 +17,7 @@ pub mod mesh;
 mod mesh_tree;
 mod nearest;
 pub mod normals;
+mod object_tree;
 mod select;
 mod shape;
 mod surface;
@@ -24,7 +26,8 @@ mod wide_bvh;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::geometry::kd_tree::{Item, KdTree, Split};
+use crate::geometry::kd_tree::Item;
+use crate::geometry::object_tree::Branch;
 use crate::math::Aabb;
 
 pub use cost::TraversalCost;
@@ -109,10 +112,10 @@ pub struct TreeStatistics {
 pub struct Geometry {
     instances: Vec<Instance>,
     kind: AcceleratorKind,
-    /// Over the bounded objects, where there are enough of them.
-    tree: Option<KdTree>,
     /// Objects that every ray is tested against.
     listed: Vec<u32>,
+    /// Over all others.
+    tree: Option<Branch>,
 }
 
 impl Geometry {
@@ -132,40 +135,23 @@ impl Geometry {
         kind: AcceleratorKind,
         stop: &AtomicBool,
     ) -> Result<Self, Stopped> {
-        /// Fewer objects are tested one by one, each by all rays of a batch that touch its box.
-        const TREE_LIMIT: usize = 48;
-        /// Of the test of an object, in steps of their tree.
-        const OBJECT_COST: f32 = 1.5;
+        /// One or two objects need no box before them: their own trees begin with one.
+        const FEW: usize = 2;
         for instance in &instances {
             if let Shape::Mesh(mesh) = instance.shape() {
                 mesh.build_tree(kind, stop)?;
             }
         }
-        let bounded = |id: &u32| instances[*id as usize].bounds().is_some();
-        let (bounded, mut listed): (Vec<u32>, Vec<u32>) =
-            (0..instances.len() as u32).partition(bounded);
-        let split = match kind {
-            AcceleratorKind::WideBvh | AcceleratorKind::KdTree => {
-                Some(Split::SurfaceArea { item_cost: OBJECT_COST })
+        let is_listed = instances.len() <= FEW || kind == AcceleratorKind::BruteForce;
+        let (mut listed, mut items) = (Vec::new(), Vec::new());
+        for (id, instance) in (0..).zip(&instances) {
+            match instance.reach() {
+                Some(bounds) if !is_listed => items.push(Item { id, bounds }),
+                _ => listed.push(id),
             }
-            AcceleratorKind::KdMidpoint => Some(Split::Midpoint),
-            AcceleratorKind::BruteForce => None,
-        };
-        let tree = match split {
-            Some(split) if bounded.len() > TREE_LIMIT => {
-                let item = |id: u32| Some(Item { id, bounds: instances[id as usize].reach()? });
-                let items = bounded.into_iter().filter_map(item).collect();
-                let clip = |id: u32, cell: Aabb| {
-                    instances[id as usize].reach().unwrap_or(cell).intersection(cell)
-                };
-                Some(kd_tree::build(items, split, &clip, stop)?)
-            }
-            _ => {
-                listed.extend(bounded);
-                None
-            }
-        };
-        Ok(Self { instances, kind, tree, listed })
+        }
+        let tree = if items.is_empty() { None } else { Some(Branch::build(items, stop)?) };
+        Ok(Self { instances, kind, listed, tree })
     }
 
     /// The objects, in the scene's order.

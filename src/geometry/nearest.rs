@@ -55,18 +55,19 @@ impl Nearest {
     }
 }
 
-/// The search of one ray for its nearest hit, or for the next after one.
-#[derive(Clone, Copy, Debug)]
+/// The search of one ray for its nearest hit, or for all.
+#[derive(Clone, Debug)]
 pub(super) struct Search {
     pub(super) nearest: Nearest,
     source: PrimitiveId,
-    after: Option<(f32, PrimitiveId)>,
+    /// Every hit so far, some of them more than once, where all are wanted.
+    all: Option<Vec<Hit>>,
 }
 
 impl Search {
     /// Nothing found yet.
     pub(super) fn new(ray: &Ray) -> Self {
-        Self { nearest: Nearest::new(ray.t_max), source: ray.source, after: None }
+        Self { nearest: Nearest::new(ray.t_max), source: ray.source, all: None }
     }
 
     /// Goes on from what was found.
@@ -74,19 +75,30 @@ impl Search {
         Self { nearest, ..Self::new(ray) }
     }
 
-    /// Only what comes after a hit, in the order of distance, then primitive.
-    pub(super) fn after(ray: &Ray, (t, id): (f32, PrimitiveId)) -> Self {
-        Self { after: Some((t, id)), ..Self::new(ray) }
+    /// For every hit; the memory may have served another search.
+    pub(super) fn for_all(ray: &Ray, mut memory: Vec<Hit>) -> Self {
+        memory.clear();
+        Self { all: Some(memory), ..Self::new(ray) }
     }
 
     /// Considers a hit at any `t`, NaN included.
     #[inline]
     pub(super) fn offer(&mut self, t: f32, id: PrimitiveId) {
-        let is_new = self.after.is_none_or(|(last, last_id)| {
-            t > last || (t == last && id > last_id && last_id != PrimitiveId::NONE)
-        });
-        if is_new {
-            self.nearest.offer(t, id, self.source);
+        match &mut self.all {
+            None => self.nearest.offer(t, id, self.source),
+            Some(all) => {
+                if t > 0.0 && t < self.nearest.t() && id != self.source {
+                    all.push(Hit { t, id });
+                }
+            }
         }
+    }
+
+    /// Every hit, once each, in the order of distance, then primitive.
+    pub(super) fn into_all(self) -> Vec<Hit> {
+        let mut all = self.all.unwrap_or_default();
+        all.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.id.cmp(&b.id)));
+        all.dedup();
+        all
     }
 }

@@ -31,9 +31,10 @@ struct Slopes {
 }
 
 impl Selection {
-    /// Begins with the rays of another batch, of which nothing is known yet.
-    pub(super) fn begin(&mut self) {
+    /// Begins with the rays of another batch: their limits.
+    pub(super) fn begin(&mut self, limits: impl Iterator<Item = f32>) {
         self.limits.clear();
+        self.limits.extend(limits);
         self.slopes.clear();
     }
 
@@ -273,12 +274,11 @@ mod tests {
             for (level, selected) in at_every_level(|| {
                 let mut selection = Selection::default();
                 // Of another batch before.
-                selection.limits.push(1.0);
+                selection.begin([1.0].into_iter());
                 let mut other = RayBatch::default();
                 other.push(Ray::new(Vec3::splat(3.0), Vec3::X));
                 assert!(!selection.select(&other, &bounds), "a ray that passes by");
-                selection.begin();
-                selection.limits.extend(&rays.t_max);
+                selection.begin(rays.t_max.iter().copied());
                 assert!(selection.select(&rays, &bounds));
                 let mut selected = selection.places;
                 assert_eq!(selected.len(), selection.rays.len());

@@ -11,6 +11,7 @@ use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use crate::io::memory::Limited;
 use crate::io::{printable, printable_path};
 
 /// Reports that one run writes at most; the first ones tell the most.
@@ -121,6 +122,9 @@ fn report(what: &str, thread: &str, calls: &str, scene: Option<&str>) -> String 
 
 /// Writes to the first free of the names `crash-01.txt`, `crash-02.txt` and so on.
 fn write_numbered(folder: &Path, text: &str) -> Option<PathBuf> {
+    if Limited::now().file.is_some_and(|most| most < text.len() as u64) {
+        return None;
+    }
     std::fs::create_dir_all(folder).ok()?;
     for number in 1..=MOST_KEPT {
         let path = folder.join(format!("crash-{number:02}.txt"));

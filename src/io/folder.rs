@@ -63,6 +63,10 @@ impl Folder {
     pub fn read(&self, file: &str) -> Result<Vec<u8>, FileError> {
         match self {
             Self::Disk(folder) => read_file(&folder.join(file), LARGEST_ASSET),
+            // A scene of the gallery can be given a file of one's own.
+            Self::Gallery if Path::new(file).is_absolute() => {
+                read_file(Path::new(file), LARGEST_ASSET)
+            }
             Self::Gallery => {
                 let path = normalised(&Path::new("scenes").join(file));
                 gallery::file(&path)
@@ -104,6 +108,7 @@ impl Folder {
     pub fn disk_path(&self, file: &str) -> Option<PathBuf> {
         match self {
             Self::Disk(folder) => Some(folder.join(file)),
+            Self::Gallery if Path::new(file).is_absolute() => Some(file.into()),
             Self::Gallery | Self::Snapshot { .. } => None,
         }
     }
@@ -153,6 +158,18 @@ fn normalised(path: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_scene_of_the_gallery_can_have_a_file_of_the_disk() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.obj");
+        std::fs::write(&path, b"12345").unwrap();
+        let named = path.to_str().unwrap();
+        assert_eq!(Folder::Gallery.read(named).ok().as_deref(), Some(&b"12345"[..]), "not read");
+        assert_eq!(Folder::Gallery.disk_path(named), Some(path.clone()), "not watched");
+        assert!(Folder::Gallery.read("a.obj").is_err(), "found where it is not");
+        assert_eq!(Folder::Gallery.disk_path("a.obj"), None, "it has no place");
+    }
 
     /// A snapshot made of a snapshot names the folder in which the files lie.
     #[test]

@@ -33,7 +33,11 @@ pub fn check(needed: u64) -> Result<(), NoMemory> {
     fits(needed, free().unwrap_or(u64::MAX))
 }
 
-fn fits(needed: u64, free: u64) -> Result<(), NoMemory> {
+/// Refuses what does not fit into what is free, part of which is left to everything else.
+///
+/// # Errors
+/// When `needed` bytes do not fit.
+pub fn fits(needed: u64, free: u64) -> Result<(), NoMemory> {
     if free - free / LEFT_TO_OTHERS < needed {
         return Err(NoMemory { needed, free });
     }
@@ -48,17 +52,49 @@ pub fn free() -> Option<u64> {
 
 /// The same, of the system whose files are there.
 fn free_under(root: &Path) -> Option<u64> {
-    let read = |path: &str| fs::read_to_string(root.join(path)).unwrap_or_default();
-    let kibibytes = |text: &str, key| number_after(text, key)?.checked_mul(1024);
-    let machine = kibibytes(&read("proc/meminfo"), "MemAvailable:");
-    let (limits, status) = (read("proc/self/limits"), read("proc/self/status"));
-    let limited =
-        [("Max address space", "VmSize:"), ("Max data size", "VmData:")].map(|(most, used)| {
-            Some(number_after(&limits, most)?.saturating_sub(kibibytes(&status, used)?))
-        });
-    let groups = read("proc/self/cgroup");
+    let machine = kibibytes_after(&read(root, "proc/meminfo"), "MemAvailable:");
+    let Limited { addresses, data, file: _ } = Limited::under(root);
+    let groups = read(root, "proc/self/cgroup");
     let groups = groups.lines().flat_map(|line| free_in_groups(&root.join("sys/fs/cgroup"), line));
-    machine.into_iter().chain(limited.into_iter().flatten()).chain(groups).min()
+    [machine, addresses, data].into_iter().flatten().chain(groups).min()
+}
+
+/// Bytes that are left within the limits set for this process; `None` where one is not set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limited {
+    /// Of the addresses that it may reserve, used or not.
+    pub addresses: Option<u64>,
+    /// Of those that it may write to.
+    pub data: Option<u64>,
+    /// Of any file; the system ends a program that writes more to one, without a word.
+    pub file: Option<u64>,
+}
+
+impl Limited {
+    /// As it is now.
+    pub fn now() -> Self {
+        Self::under(Path::new("/"))
+    }
+
+    fn under(root: &Path) -> Self {
+        let (limits, status) = (read(root, "proc/self/limits"), read(root, "proc/self/status"));
+        let left = |most, used| {
+            Some(number_after(&limits, most)?.saturating_sub(kibibytes_after(&status, used)?))
+        };
+        Self {
+            addresses: left("Max address space", "VmSize:"),
+            data: left("Max data size", "VmData:"),
+            file: number_after(&limits, "Max file size"),
+        }
+    }
+}
+
+fn read(root: &Path, path: &str) -> String {
+    fs::read_to_string(root.join(path)).unwrap_or_default()
+}
+
+fn kibibytes_after(text: &str, key: &str) -> Option<u64> {
+    number_after(text, key)?.checked_mul(1024)
 }
 
 /// What is left of the control group in a line `NUMBER:KINDS:/PATH` of `/proc/self/cgroup`, and of
@@ -159,6 +195,10 @@ mod tests {
             let files = [("proc/self/limits", limit), ("proc/self/status", status)];
             assert_eq!(free_under(system(&files).path()), Some(expected), "{limit}");
         }
+        let limit = "Max file size             512                  unlimited            bytes\n";
+        let system = system(&[("proc/self/limits", limit), ("proc/self/status", status)]);
+        let expected = Limited { addresses: None, data: None, file: Some(512) };
+        assert_eq!(Limited::under(system.path()), expected, "of files");
     }
 
     /// Files that the system keeps in memory only because there is room count as free.

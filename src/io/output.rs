@@ -10,6 +10,7 @@ use image::{ExtendedColorType, ImageEncoder};
 use serde::{Deserialize, Serialize};
 
 use crate::color::Picture;
+use crate::io::memory::Limited;
 use crate::io::printable_path;
 
 /// Begins the names of files that are being written; then come [`N_RANDOM`] letters and digits.
@@ -199,6 +200,13 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
 }
 
 fn write_temporary(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile, WriteError> {
+    let needed = bytes.len() as u64;
+    if let Some(most) = Limited::now().file
+        && most < needed
+    {
+        let reason = format!("takes {needed} bytes, and a file may have {most} here (ulimit -f)");
+        return Err(WriteError::new(path, reason));
+    }
     remove_left_behind(folder_of(path));
     let mut builder = tempfile::Builder::new();
     builder.prefix(TEMPORARY).rand_bytes(N_RANDOM);

@@ -60,7 +60,7 @@ impl App {
             Action::Snapshot => self.snapshot(),
             Action::RenderPicture => self.interface.export_shown = !self.interface.export_shown,
             Action::Save => self.save_scene(ctx),
-            Action::SaveAs => self.files.ask_where_to_save(ctx, &mut self.dialogs),
+            Action::SaveAs => self.ask_where_to_save(ctx),
             Action::Open => self.dialogs.ask(ctx, Purpose::Open, ""),
             Action::Gallery => self.interface.start_shown = !self.interface.start_shown,
             Action::CloseScene => {
@@ -70,13 +70,13 @@ impl App {
             Action::CopyImage => self.copy_picture(ctx),
             Action::Undo => {
                 if let Some(step) = self.document.undo() {
-                    self.toasts.say(format!("undone: {step}"));
+                    self.toasts.say_anew("undone: ", &step);
                 }
                 scene.clone_from(&self.document.description);
             }
             Action::Redo => {
                 if let Some(step) = self.document.redo() {
-                    self.toasts.say(format!("done again: {step}"));
+                    self.toasts.say_anew("done again: ", &step);
                 }
                 scene.clone_from(&self.document.description);
             }
@@ -115,6 +115,7 @@ impl App {
             ToolbarChoice::Do(action) => self.do_action(ctx, scene, action),
             ToolbarChoice::File(path) => self.open(Source::File(path)),
             ToolbarChoice::PathBox => self.dialogs.type_path(Purpose::Open, ""),
+            ToolbarChoice::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
         }
     }
 
@@ -178,26 +179,24 @@ impl App {
 
     /// Shows the box for a path and takes what the dialogs answered.
     pub(super) fn ask_for_paths(&mut self, ctx: &egui::Context) {
-        match self.dialogs.take_path(ctx) {
-            None => {}
-            Some((Purpose::Open, path)) => self.open(Source::File(path)),
-            Some((Purpose::SaveScene, path)) => self.save_to(ctx, path),
-            Some((Purpose::PictureFolder, path)) => self.interface.export.folder = Some(path),
+        if let Some(answered) = self.dialogs.take_answer(ctx, self.viewport.rect) {
+            self.take_path(ctx, answered);
         }
     }
 
     fn enlarge_text(&mut self, ctx: &egui::Context, tenths: f32) {
         self.interface.enlarge(tenths);
         ctx.set_zoom_factor(self.interface.scale);
-        self.toasts.say(format!("text at {:.0} %", self.interface.scale * 100.0));
+        let percent = format!("{:.0} %", self.interface.scale * 100.0);
+        self.toasts.say_anew("text at ", &percent);
     }
 
     fn cancel(&mut self, ctx: &egui::Context) {
         let closed = std::mem::take(&mut self.interface.help_shown)
+            || self.dismiss_path_box()
+            || self.stop_asking()
             || self.interface.picking.take().is_some()
             || std::mem::take(&mut self.interface.loupe.shown)
-            || self.dialogs.dismiss()
-            || self.stop_asking()
             || self.files.cancel_loading()
             || self.toasts.dismiss()
             || std::mem::take(&mut self.interface.export_shown)
@@ -206,6 +205,14 @@ impl App {
         if !closed && full {
             ctx.send_viewport_cmd(ViewportCommand::Fullscreen(false));
         }
+    }
+
+    fn dismiss_path_box(&mut self) -> bool {
+        let was_open = self.dialogs.dismiss();
+        if was_open {
+            self.give_up_saving();
+        }
+        was_open
     }
 
     /// Pins the picture on show, or lets the pinned one go.
@@ -264,10 +271,22 @@ impl App {
         }
     }
 
+    /// Asks where to save, and suggests the scene's own file, or one of its name at home.
+    fn ask_where_to_save(&mut self, ctx: &egui::Context) {
+        let own = self.files.scene_path.clone();
+        let suggestion = own.clone().unwrap_or_else(|| {
+            let name = format!("{}.toml", self.files.title);
+            let home = || std::env::home_dir().unwrap_or_default().join(&name);
+            self.files.folder.disk_path(&name).unwrap_or_else(home)
+        });
+        self.dialogs.own_file = own;
+        self.dialogs.ask(ctx, Purpose::SaveScene, &suggestion.display().to_string());
+    }
+
     pub(super) fn save_scene(&mut self, ctx: &egui::Context) {
         match self.files.scene_path.clone() {
             Some(path) => self.save_to(ctx, path),
-            None => self.files.ask_where_to_save(ctx, &mut self.dialogs),
+            None => self.ask_where_to_save(ctx),
         }
     }
 }

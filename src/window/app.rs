@@ -6,7 +6,7 @@ use super::dialogs::PathDialogs;
 use super::export::Exporter;
 use super::files::FileWork;
 use super::gesture::Gesture;
-use super::keys::{self, Keys};
+use super::keys::{self, Action, Keys};
 use super::lens_overlay::LensOverlay;
 use super::pacing::Pacing;
 use super::picture::PictureDisplay;
@@ -16,6 +16,7 @@ use super::recovery::Recovery;
 use super::settings::Settings;
 use super::start::{Thumbnails, drop_hint};
 use super::state::{InterfaceState, Remembered};
+use super::structure::Part;
 use super::swatches::Swatches;
 use super::toasts::Toasts;
 use super::viewport::Click;
@@ -41,6 +42,8 @@ pub(super) struct App {
     pub(super) home_camera: CameraDescription,
     /// The click whose answer from the renderer is awaited.
     pub(super) awaited_click: Option<Click>,
+    /// The part, by name, whose file is being chosen.
+    pub(super) file_wanted: Option<(Part, String)>,
     pub(super) gesture: Gesture,
     pacing: Pacing,
     /// Whether the next full picture is written to a file.
@@ -135,6 +138,7 @@ impl App {
             keys,
             keys_file,
             awaited_click: None,
+            file_wanted: None,
             snapshot_wanted: false,
             export_wanted: false,
             exporter: Exporter::default(),
@@ -158,6 +162,14 @@ impl App {
                 rect: egui::Rect::ZERO,
             },
         })
+    }
+
+    /// Says what a hand can do, to someone who is here for the first time.
+    pub(super) fn greet(&mut self) {
+        let keys = self.keys.shown(Action::Help);
+        self.toasts.hint(format!(
+            "Drag to orbit, scroll to go nearer, Ctrl + click to focus. {keys} lists all keys."
+        ));
     }
 
     /// Size in pixels of the picture being rendered.
@@ -206,8 +218,9 @@ impl App {
         self.render(&ctx, scene);
         self.export_box(&ctx);
         self.help_overlay(&ctx);
-        self.offer_copy(&ctx);
+        self.ask_for_part_file(&ctx);
         self.ask_for_paths(&ctx);
+        self.offer_copy(&ctx);
         self.ask_about_unsaved(&ctx);
         if !self.interface.start_shown {
             drop_hint(&ctx, self.viewport.rect);

@@ -1,11 +1,20 @@
 //! Editing colours: linear RGB in the description, shown through the sRGB transfer.
 
+use super::fields::field;
 use super::parameter::parameter;
 use super::theme::ROW_HEIGHT;
 use super::widgets::{Figure, number_box, row};
+use crate::color::linear_from_srgb;
 use crate::scene::description::Triple;
 use egui::ecolor::Hsva;
-use egui::{Color32, Rgba, Sense, Stroke, StrokeKind, Ui, Vec2};
+use egui::{Color32, Key, Rgba, Sense, Stroke, StrokeKind, Ui, Vec2};
+
+/// Between the boxes of the picker, in points.
+const GAP: f32 = 3.0;
+/// Width of the names in the picker, in points.
+const NAME_WIDTH: f32 = 43.0;
+/// How far an arrow key moves a mark of the picker, of its whole way.
+const KEY_STEP: f32 = 0.02;
 
 /// A line with a swatch that opens a picker. Reflectances, textures: held to 0..=1 by the picker;
 /// the boxes take what `highest` allows.
@@ -39,7 +48,8 @@ pub(super) fn swatch(
     let line = if response.hovered() || response.has_focus() {
         Stroke::new(1.0, visuals.fg_stroke.color)
     } else {
-        Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color)
+        // Neither a dark nor a bright colour looks like an empty button.
+        Stroke::new(1.0, ui.visuals().weak_text_color().gamma_multiply(0.6))
     };
     ui.painter().rect(rect, 4.0, display_color(value), line, StrokeKind::Inside);
     let shown = value.map(|channel| format!("{channel:.3}")).join("  ");
@@ -104,11 +114,11 @@ fn picker(ui: &mut Ui, label: &str, highest: f64, value: &mut Triple) {
     }
     ui.data_mut(|data| data.insert_temp(id, hsva));
     ui.add_space(4.0);
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 3.0;
+    line(ui, "Linear", |ui| {
+        let width = ((ui.available_width() - 2.0 * GAP) / 3.0).floor();
         for (channel, name) in ["red", "green", "blue"].into_iter().enumerate() {
             let mut typed = value[channel];
-            let response = number_box(ui, &mut typed, 68.0, 0.004, "", false)
+            let response = number_box(ui, &mut typed, width, 0.004, "", false)
                 .accessible_name(format!("{label}: {name}"))
                 .on_hover_text(format!("{name}, linear"));
             if response.changed() && typed.is_finite() {
@@ -116,6 +126,64 @@ fn picker(ui: &mut Ui, label: &str, highest: f64, value: &mut Triple) {
             }
         }
     });
+    line(ui, "sRGB", |ui| {
+        let (name, width) = (format!("{label}: sRGB"), ui.available_width());
+        let help = "as other programs write it: #rrggbb";
+        let entered = field(ui, width, &name, help, "#rrggbb", "", &hex(value));
+        if let Some(new) = entered.as_deref().and_then(from_hex) {
+            *value = new;
+        }
+    });
+}
+
+/// A line of the picker with its name.
+fn line(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = GAP;
+        let size = Vec2::new(NAME_WIDTH, ROW_HEIGHT);
+        let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        let color = ui.visuals().weak_text_color();
+        ui.painter().text(rect.left_center(), egui::Align2::LEFT_CENTER, name, font, color);
+        contents(ui);
+    });
+}
+
+/// As other programs write it; what is brighter than white is white.
+fn hex(linear: &Triple) -> String {
+    let [r, g, b, _] = display_color(linear).to_array();
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// The linear colour of `#rrggbb` or `#rgb`, with or without the hash.
+fn from_hex(text: &str) -> Option<Triple> {
+    let digits = text.trim().trim_start_matches('#');
+    let digits: Vec<u32> = digits.chars().map(|c| c.to_digit(16)).collect::<Option<_>>()?;
+    let bytes = match digits[..] {
+        [r, g, b] => [r * 17, g * 17, b * 17],
+        [a, b, c, d, e, f] => [a * 16 + b, c * 16 + d, e * 16 + f],
+        _ => return None,
+    };
+    Some(bytes.map(|byte| f64::from(linear_from_srgb(byte as f32 / 255.0))))
+}
+
+/// Steps to the right and down by the arrow keys, where the widget has the focus.
+fn arrows(ui: &Ui, response: &egui::Response) -> Vec2 {
+    if !response.has_focus() {
+        return Vec2::ZERO;
+    }
+    let (horizontal_arrows, vertical_arrows) = (true, true);
+    let filter = egui::EventFilter { horizontal_arrows, vertical_arrows, ..Default::default() };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    ui.painter().rect_stroke(
+        response.rect,
+        2.0,
+        Stroke::new(1.5, ui.visuals().strong_text_color()),
+        StrokeKind::Outside,
+    );
+    let presses = |key| ui.input(|input| input.num_presses(key)) as f32;
+    let right = presses(Key::ArrowRight) - presses(Key::ArrowLeft);
+    Vec2::new(right, presses(Key::ArrowDown) - presses(Key::ArrowUp))
 }
 
 /// Saturation to the right, value to the top, at one hue.
@@ -124,9 +192,12 @@ fn saturation_value_square(ui: &mut Ui, label: &str, hsva: &mut Hsva) -> bool {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(220.0, 132.0), Sense::click_and_drag());
     let name = format!("{label}: saturation and brightness");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, &name));
-    let picked = response.interact_pointer_pos();
-    if let Some(at) = picked {
-        let share = (at - rect.min) / rect.size();
+    let steps = arrows(ui, &response) * KEY_STEP;
+    let here = Vec2::new(hsva.s, 1.0 - hsva.v.max(0.0).sqrt());
+    let nudged = (steps != Vec2::ZERO).then_some(here + steps);
+    let hand = response.interact_pointer_pos().map(|at| (at - rect.min) / rect.size());
+    let picked = hand.or(nudged);
+    if let Some(share) = picked {
         hsva.s = share.x.clamp(0.0, 1.0);
         // Squared, so that equal steps look about equal in linear light.
         hsva.v = (1.0 - share.y).clamp(0.0, 1.0).powi(2);
@@ -155,9 +226,12 @@ fn hue_bar(ui: &mut Ui, label: &str, hsva: &mut Hsva) -> bool {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(220.0, 18.0), Sense::click_and_drag());
     let name = format!("{label}: hue");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, &name));
-    let picked = response.interact_pointer_pos();
-    if let Some(at) = picked {
-        hsva.h = ((at.x - rect.left()) / rect.width()).clamp(0.0, 0.9999);
+    let steps = arrows(ui, &response).x * KEY_STEP;
+    let nudged = (steps != 0.0).then_some(hsva.h + steps);
+    let hand = response.interact_pointer_pos().map(|at| (at.x - rect.left()) / rect.width());
+    let picked = hand.or(nudged);
+    if let Some(share) = picked {
+        hsva.h = share.clamp(0.0, 0.9999);
     }
     let mut mesh = egui::Mesh::default();
     for column in 0..=CELLS {
@@ -191,6 +265,20 @@ mod tests {
     fn a_swatch_shows_linear_middle_grey_as_srgb_188() {
         let color = display_color(&[0.5, 0.5, 0.5]);
         assert_eq!((color.r(), color.g(), color.b()), (188, 188, 188), "got {color:?}");
+    }
+
+    #[test]
+    fn a_colour_is_written_as_other_programs_write_it() {
+        assert_eq!(hex(&[1.0, 0.5, 0.0]), "#ffbc00", "another colour");
+        for text in ["#ffbc00", "FFBC00", " #fb0 "] {
+            let [r, _, b] = from_hex(text).unwrap_or_else(|| panic!("{text} is refused"));
+            assert_eq!((r, b), (1.0, 0.0), "{text}");
+        }
+        let [_, green, _] = from_hex("#ffbc00").unwrap();
+        assert!((green - 0.5).abs() < 0.005, "green is {green}");
+        for text in ["", "#", "#ffb", "12345", "#gggggg", "#ffbc0000"] {
+            assert_eq!(from_hex(text).is_some(), text == "#ffb", "{text}");
+        }
     }
 
     #[test]

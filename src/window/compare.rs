@@ -4,6 +4,7 @@ use super::figures::significant;
 use crate::io::scene_file::{self, ParameterPath};
 use crate::scene::description::SceneDescription;
 use egui::{Align2, Color32, ColorImage, Pos2, Rect, Sense, Stroke, TextureHandle, Ui, pos2};
+use std::collections::HashMap;
 use std::sync::Arc;
 use toml::Value;
 
@@ -170,20 +171,14 @@ fn difference_ui(ui: &mut Ui, difference: &Difference) -> Option<CompareChoice> 
 
 /// The parameters whose values differ, in the order of the scene as it is now, then those gone.
 fn differences(then: &SceneDescription, now: &SceneDescription) -> Vec<Difference> {
-    let known = |scene: &SceneDescription| -> Vec<(ParameterPath, Value)> {
-        let value = |path: ParameterPath| {
-            let value = scene_file::get(scene, &path).ok().flatten()?;
-            Some((path, value))
-        };
-        scene_file::parameters(scene).into_iter().filter_map(value).collect()
+    let (then, now) = (scene_file::values(then), scene_file::values(now));
+    let table = |list: &[(ParameterPath, Value)]| -> HashMap<String, Value> {
+        list.iter().map(|(path, value)| (path.to_string(), value.clone())).collect()
     };
-    let (then, now) = (known(then), known(now));
-    let find = |list: &[(ParameterPath, Value)], path: &ParameterPath| {
-        list.iter().find(|(known, _)| known == path).map(|(_, value)| value.clone())
-    };
+    let (known_then, known_now) = (table(&then), table(&now));
     let mut differences = Vec::new();
-    for (path, value) in now.iter().cloned() {
-        let before = find(&then, &path);
+    for (path, value) in now {
+        let before = known_then.get(&path.to_string()).cloned();
         let line = match &before {
             Some(before) if *before == value => continue,
             Some(before) => format!("{path}: {}, now {}", shown(before), shown(&value)),
@@ -192,7 +187,7 @@ fn differences(then: &SceneDescription, now: &SceneDescription) -> Vec<Differenc
         differences.push(Difference { path, then: before, line });
     }
     for (path, value) in then {
-        if find(&now, &path).is_none() {
+        if !known_now.contains_key(&path.to_string()) {
             let line = format!("{path}: gone, was {}", shown(&value));
             differences.push(Difference { path, then: Some(value), line });
         }

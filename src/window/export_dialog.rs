@@ -157,10 +157,10 @@ fn foot(ui: &mut Ui, facts: &ExportFacts<'_>) -> Option<ExportChoice> {
         Some(progress) => {
             let bar = egui::ProgressBar::new(progress.share())
                 .desired_width(WIDTH)
-                .desired_height(ROW_HEIGHT)
-                .corner_radius(4)
-                .text(progress_text(progress));
-            ui.add(bar);
+                .desired_height(6.0)
+                .corner_radius(3);
+            ui.add(bar).on_hover_text("how much of the picture is there");
+            ui.weak(progress_text(progress));
             ui.add_space(2.0);
             ui.horizontal(|ui| {
                 let stop = ui.button("Stop").on_hover_text("writes nothing");

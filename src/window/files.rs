@@ -1,6 +1,5 @@
 //! Opening, saving and snapshots: what is under way and what came of it, on threads of their own.
 
-use super::dialogs::{PathDialogs, Purpose};
 use crate::io::folder::{FileRecord, Folder};
 use crate::loader::{Loader, Source};
 use crate::scene::description::SceneDescription;
@@ -160,11 +159,6 @@ impl FileWork {
     /// The end of a task, once.
     pub(super) fn take_written(&self) -> Option<Written> {
         self.written.try_recv().ok()
-    }
-
-    /// Asks where to save.
-    pub(super) fn ask_where_to_save(&self, ctx: &egui::Context, dialogs: &mut PathDialogs) {
-        dialogs.ask(ctx, Purpose::SaveScene, &format!("{}.toml", self.title));
     }
 }
 

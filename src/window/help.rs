@@ -1,9 +1,12 @@
 //! The help overlay: every key and motion, from the table that binds them.
 
-use super::keys::{Keys, MOTIONS, keys_of};
-use super::theme::modal_frame;
+use super::keys::{Group, Keys, MOTIONS, keys_of};
+use super::theme::{self, modal_frame};
 use egui::{Id, RichText, Ui};
 use std::path::Path;
+
+/// Width of the column of keys, in points: the groups below one another are in line.
+const KEYS_WIDTH: f32 = 168.0;
 
 /// What was chosen in the overlay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,9 +31,8 @@ pub(super) fn help_ui(
         ui.add_space(8.0);
         egui::ScrollArea::vertical().max_height(room.max(120.0)).show(ui, |ui| {
             ui.horizontal_top(|ui| {
-                let lines = lines(keys);
-                for (column, part) in lines.chunks(lines.len().div_ceil(2)).enumerate() {
-                    ui.vertical(|ui| column_ui(ui, column, part));
+                for column in COLUMNS {
+                    ui.vertical(|ui| column.iter().for_each(|group| group_ui(ui, keys, *group)));
                     ui.add_space(24.0);
                 }
             });
@@ -65,24 +67,35 @@ pub(super) fn help_ui(
     modal.inner.or(modal.should_close().then_some(HelpChoice::Close))
 }
 
-fn column_ui(ui: &mut Ui, column: usize, lines: &[(String, &'static str)]) {
-    egui::Grid::new(("keys", column)).num_columns(2).spacing([18.0, 5.0]).show(ui, |ui| {
-        for (keys, does) in lines {
+/// The groups of each column; `None` are the motions of the mouse.
+const COLUMNS: [&[Option<Group>]; 2] = [
+    &[None, Some(Group::Camera), Some(Group::Scene)],
+    &[Some(Group::Picture), Some(Group::Window)],
+];
+
+fn group_ui(ui: &mut Ui, keys: &Keys, group: Option<Group>) {
+    let title = group.map_or("Mouse", Group::title);
+    ui.label(RichText::new(title).small().color(theme::accent(ui.visuals())));
+    let grid = egui::Grid::new(("keys", title)).num_columns(2).min_row_height(18.0);
+    grid.min_col_width(KEYS_WIDTH).spacing([18.0, 2.0]).show(ui, |ui| {
+        for (keys, does) in lines(keys, group) {
             ui.label(RichText::new(keys).strong());
-            ui.label(RichText::new(*does).weak());
+            ui.label(RichText::new(does).weak());
             ui.end_row();
         }
     });
+    ui.add_space(8.0);
 }
 
-/// Motions first, then keys; several keys of one action in one line.
-fn lines(keys: &Keys) -> Vec<(String, &'static str)> {
-    let mut lines: Vec<(String, &'static str)> =
-        MOTIONS.iter().map(|(input, does)| ((*input).to_owned(), *does)).collect();
-    let n_motions = lines.len();
-    for binding in &keys.bindings {
+/// The lines of a group; several keys of one action in one line.
+fn lines(keys: &Keys, group: Option<Group>) -> Vec<(String, &'static str)> {
+    let Some(group) = group else {
+        return MOTIONS.iter().map(|(input, does)| ((*input).to_owned(), *does)).collect();
+    };
+    let mut lines: Vec<(String, &'static str)> = Vec::new();
+    for binding in keys.bindings.iter().filter(|binding| binding.action.group() == group) {
         let keys = keys_of(binding);
-        match lines[n_motions..].iter_mut().find(|(_, does)| *does == binding.does) {
+        match lines.iter_mut().find(|(_, does)| *does == binding.does) {
             Some((shown, _)) => *shown = format!("{shown}, {keys}"),
             None => lines.push((keys, binding.does)),
         }
@@ -97,7 +110,8 @@ mod tests {
     #[test]
     fn the_help_names_every_binding() {
         let keys = Keys::default();
-        let lines = lines(&keys);
+        let groups = COLUMNS.iter().flat_map(|column| column.iter());
+        let lines: Vec<_> = groups.flat_map(|group| lines(&keys, *group)).collect();
         for binding in &keys.bindings {
             let keys = keys_of(binding);
             let named = lines.iter().any(|(shown, _)| shown.split(", ").any(|one| one == keys));

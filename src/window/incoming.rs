@@ -2,6 +2,7 @@
 
 use super::app::{App, empty_scene};
 use super::files::{Written, file_title};
+use super::keys::Action;
 use super::panels::{self, PickFor};
 use super::probe::{described, part_of};
 use super::status::Probed;
@@ -137,10 +138,14 @@ impl App {
                 }
             }
         }
+        if self.interface.panel_shown {
+            return;
+        }
+        // The panel would say it.
         let Probed { object, material, .. } = told;
-        let made_of = if material.is_empty() { String::new() } else { format!(" and {material}") };
-        let shows = if self.interface.panel_shown { "the panel shows " } else { "" };
-        self.toasts.say(format!("{shows}{object}{made_of}"));
+        let made_of = if material.is_empty() { String::new() } else { format!(", {material}") };
+        let hint = self.keys.hint("shown in the panel", Action::TogglePanel);
+        self.toasts.say(format!("{object}{made_of}: {hint}"));
     }
 
     /// Opens a file that was dropped on the window.
@@ -227,7 +232,7 @@ impl App {
 
     /// Takes over what another program made of the open scene, in one step of undo. A camera that
     /// was moved stays, unless the file moved it too; and so do all edits, where only a mesh or an
-    /// image is another.
+    /// image is another, also where the scene is made up around that mesh.
     fn take_reloaded(&mut self, loaded: Loaded) {
         self.files.loading = None;
         self.files.is_reloading = false;
@@ -240,6 +245,12 @@ impl App {
         self.watch_files();
         let mut description = loaded.description;
         let file_camera = description.camera.clone();
+        if loaded.source.is_mesh() {
+            self.home_camera = file_camera;
+            self.document.rebase(description);
+            self.toasts.say("reloaded: another program changed a file of the scene");
+            return;
+        }
         let saved = self.document.saved();
         let has_camera_moved = file_camera != self.home_camera && file_camera != saved.camera;
         if !has_camera_moved {

@@ -6,7 +6,7 @@ pub(super) mod file;
 pub(super) mod number_pad;
 mod table;
 
-pub(super) use action::Action;
+pub(super) use action::{Action, Group};
 pub(super) use table::{BINDINGS, MOTIONS};
 
 use egui::{Key, Modifiers};
@@ -41,8 +41,9 @@ impl Default for Keys {
 impl Keys {
     /// The actions whose keys were pressed, taken out of the input. Keys alone do nothing while a
     /// text field has the focus; with Ctrl they do, but for those that text fields use themselves.
-    /// Space presses the button that has the focus. While the camera is `flying`, letters belong to it; Escape belongs to an open menu. A key that is
-    /// held does its action once, but for those that step.
+    /// Space presses the button that has the focus. While the camera is `flying`, letters belong to
+    /// it; Escape belongs to an open menu. A key that is held does its action once, but for those
+    /// that step.
     pub(super) fn pressed(&self, ctx: &egui::Context, flying: bool) -> Vec<Action> {
         let typing = ctx.text_edit_focused();
         let has_focus = ctx.memory(|memory| memory.focused().is_some());

@@ -11,7 +11,7 @@ use std::sync::Arc;
 impl App {
     /// Makes what the panels did a step of undo. What no scene file could say is not taken over:
     /// the scene stays at its last valid state.
-    fn take_edit(&mut self, scene: SceneDescription) {
+    pub(super) fn take_edit(&mut self, scene: SceneDescription) {
         if scene == self.document.description {
             return;
         }
@@ -22,9 +22,8 @@ impl App {
         if lens_of(&self.document.description.camera) != lens_of(&scene.camera) {
             self.lens_gesture = Some(self.gesture.id());
         }
-        let label = edit_label(&self.document.description, &scene);
         self.document.description = scene;
-        self.document.checkpoint(label, Some(self.gesture.id()));
+        self.document.checkpoint(Some(self.gesture.id()));
     }
 
     /// Whether what is sharp is marked in the picture: where that is switched on, and while the
@@ -101,25 +100,4 @@ impl App {
 /// What decides what is sharp.
 fn lens_of(camera: &CameraDescription) -> (f64, Option<f64>) {
     (camera.aperture_radius, camera.focal_distance)
-}
-
-/// What undo would say it undoes.
-fn edit_label(before: &SceneDescription, after: &SceneDescription) -> &'static str {
-    if before.camera != after.camera {
-        "camera"
-    } else if before.lights != after.lights {
-        "light"
-    } else if before.materials != after.materials {
-        "material"
-    } else if before.textures != after.textures {
-        "texture"
-    } else if before.objects != after.objects {
-        "object"
-    } else if before.environment != after.environment {
-        "background"
-    } else if before.tone_mapping != after.tone_mapping {
-        "exposure and curve"
-    } else {
-        "render settings"
-    }
 }

@@ -15,6 +15,7 @@ mod event_loop;
 mod export;
 mod export_dialog;
 mod export_settings;
+mod fault;
 mod fields;
 mod figures;
 mod files;
@@ -62,12 +63,15 @@ pub use headless::{Headless, HeadlessFrame};
 use crate::loader::Source;
 use dialogs::PathDialogs;
 use event_loop::Listening;
+use fault::FaultKeeper;
 use std::cell::RefCell;
 use std::path::PathBuf;
 use std::rc::Rc;
 use winit::event_loop::EventLoop;
 use winit::platform::run_on_demand::EventLoopExtRunOnDemand as _;
 
+/// Hears what the system says before there is a window.
+static FAULT: FaultKeeper = FaultKeeper::new();
 /// Names the program to the system, and its folder.
 const APP_ID: &str = "penumbra";
 /// The gallery scene that opens where no file is named.
@@ -115,15 +119,23 @@ pub fn run(file: Option<PathBuf>) -> Result<(), WindowError> {
         ..eframe::NativeOptions::default()
     };
     // Why there is no window, until there is one: what goes wrong before is kept by nobody else.
+    // It is heard only where nobody else listens to the log.
+    if log::set_logger(&FAULT).is_ok() {
+        log::set_max_level(log::LevelFilter::Error);
+    }
     let failure = Rc::new(RefCell::new(Some("there is no OpenGL".to_owned())));
     let told = Rc::clone(&failure);
     let create: eframe::AppCreator<'_> = Box::new(move |cc| {
         theme::install(&cc.egui_ctx);
         let own = own_folder();
         let remembered = settings::load(own.as_deref());
+        let is_first_start = !settings::are_there(own.as_deref());
         let app = app::App::new(&cc.egui_ctx, remembered, first, own);
         *told.borrow_mut() = app.as_ref().err().map(ToString::to_string);
         let mut app = app?;
+        if is_first_start {
+            app.greet();
+        }
         app.dialogs = PathDialogs::like(rfd::AsyncFileDialog::new().set_parent(cc));
         Ok(Box::new(app))
     });
@@ -132,9 +144,18 @@ pub fn run(file: Option<PathBuf>) -> Result<(), WindowError> {
     let window = eframe::create_native(APP_ID, options, create, &event_loop);
     let ended = event_loop.run_app_on_demand(&mut Listening(window));
     let told = failure.take().or(ended.err().map(|error| error.to_string()));
+    let told = told.map(|reason| no_window(reason, FAULT.take()));
     match told {
         Some(reason) => Err(WindowError::NoWindow { reason }),
         None => Ok(()),
+    }
+}
+
+/// Why there is no window, with what the driver says of it.
+fn no_window(reason: String, driver: Option<String>) -> String {
+    match driver {
+        Some(driver) if driver != reason => format!("{reason}: {driver}"),
+        Some(_) | None => reason,
     }
 }
 

@@ -16,11 +16,7 @@ const MOST_SNAPSHOTS: u32 = 9999;
 impl App {
     /// Saves the scene as it is now in that file.
     pub(super) fn save_to(&mut self, ctx: &egui::Context, path: PathBuf) {
-        let path = match path.extension() {
-            Some(_) => path,
-            None => path.with_extension("toml"),
-        };
-        let path = std::path::absolute(&path).unwrap_or(path);
+        let path = with_scene_ending(&path);
         let description = self.document.description.clone();
         let folder = self.files.folder.clone();
         let files: Vec<String> =
@@ -82,6 +78,15 @@ impl App {
             None => self.toasts.say("there is no picture yet"),
         }
     }
+}
+
+/// A whole path for a scene file, with its ending where none was given.
+pub(super) fn with_scene_ending(path: &Path) -> PathBuf {
+    let path = match path.extension() {
+        Some(_) => path.to_owned(),
+        None => path.with_extension("toml"),
+    };
+    std::path::absolute(&path).unwrap_or(path)
 }
 
 /// Writes to the first free of the names `{title}-001.png`, `{title}-002.png` and so on; gives

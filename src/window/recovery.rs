@@ -2,12 +2,14 @@
 //! program's own folder, as a snapshot without a picture.
 
 use super::app::App;
+use super::dialogs::{BELOW_TOP, over_picture};
 use super::files::Written;
+use super::theme::main_button;
 use crate::io::output::{encode_png, replace_file};
 use crate::io::snapshot;
 use crate::loader::Source;
 use crate::scene::description::SceneDescription;
-use egui::{Align2, Id, RichText, Vec2};
+use egui::{Id, RichText};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -148,27 +150,20 @@ impl App {
         let Some(path) = self.recovery.path.clone().filter(|_| self.recovery.offered) else {
             return;
         };
-        let answer = egui::Area::new(Id::unique("recovery"))
-            .order(egui::Order::Foreground)
-            .anchor(Align2::CENTER_TOP, Vec2::new(0.0, 64.0))
-            .show(ctx, |ui| {
-                egui::Frame::popup(ui.style())
-                    .inner_margin(14)
-                    .show(ui, |ui| {
-                        ui.label(RichText::new("Penumbra was not closed properly").strong());
-                        ui.label("A copy of the scene that was being edited is there.");
-                        ui.add_space(6.0);
-                        ui.horizontal(|ui| {
-                            let restore = ui.button("Restore it").clicked();
-                            let drop = ui.button("Let it go").clicked();
-                            (restore, drop)
-                        })
-                        .inner
-                    })
-                    .inner
+        let over = self.viewport.rect;
+        // Below the box for a path, where that is open.
+        let foot = self.dialogs.foot(ctx).map_or(over.top() + BELOW_TOP, |foot| foot + 8.0);
+        let (restore, drop) = over_picture(ctx, Id::unique("recovery"), foot, over, |ui| {
+            ui.label(RichText::new("Penumbra was not closed properly").strong());
+            ui.label("There is a copy of the scene that was being edited, with its edits.");
+            ui.add_space(6.0);
+            ui.horizontal(|ui| {
+                let restore = ui.add(main_button(ui, "Restore")).clicked();
+                let drop = ui.button("Discard").on_hover_text("removes the copy").clicked();
+                (restore, drop)
             })
-            .inner;
-        let (restore, drop) = answer;
+            .inner
+        });
         if restore {
             self.open(Source::File(path.clone()));
         }

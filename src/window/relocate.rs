@@ -57,7 +57,7 @@ pub(super) fn relocated(
 }
 
 /// A path as seen from a folder, with `/` between its parts; unchanged where nothing is shared.
-fn relative(path: &Path, from: &Path) -> String {
+pub(super) fn relative(path: &Path, from: &Path) -> String {
     let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let (path, from) = (normalised(&path), normalised(from));
     let n_shared = path.components().zip(from.components()).take_while(|(a, b)| a == b).count();

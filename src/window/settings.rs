@@ -34,6 +34,11 @@ pub(super) fn load(folder: Option<&Path>) -> Remembered {
     text.and_then(|text| toml::from_str(&text).ok()).unwrap_or_default()
 }
 
+/// Whether the program has been here before: it leaves its settings behind.
+pub(super) fn are_there(folder: Option<&Path>) -> bool {
+    folder.is_some_and(|folder| path_in(folder).exists())
+}
+
 fn path_in(folder: &Path) -> PathBuf {
     folder.join("settings.toml")
 }

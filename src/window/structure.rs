@@ -66,6 +66,25 @@ pub(super) fn duplicate(scene: &mut SceneDescription, part: Part, index: usize) 
     index + 1
 }
 
+/// Gives the texture or the object of that name its file, and with it the kind that has one.
+pub(super) fn set_file(scene: &mut SceneDescription, part: Part, name: &str, file: String) {
+    match part {
+        Part::Texture => {
+            let texture = scene.textures.iter_mut().find(|texture| texture.name == name);
+            if let Some(texture) = texture {
+                (texture.kind, texture.file) = (TextureKind::Image, Some(file));
+            }
+        }
+        Part::Object => {
+            if let Some(object) = scene.objects.iter_mut().find(|object| object.name == name) {
+                (object.kind, object.file) = (ObjectKind::Mesh, Some(file));
+            }
+        }
+        // They have none.
+        Part::Light | Part::Material => {}
+    }
+}
+
 /// Removes a part. Objects that wore a removed material turn to the neutral grey; colours that
 /// came from a removed texture turn to grey, and its bumps go.
 pub(super) fn remove(scene: &mut SceneDescription, part: Part, index: usize) {

@@ -4,7 +4,8 @@
 //! the warm edge of a shadow and marks only what is active.
 
 use egui::{
-    Color32, CornerRadius, FontFamily, FontId, Margin, Stroke, Style, TextStyle, Theme, Vec2,
+    Button, Color32, CornerRadius, FontFamily, FontId, Margin, RichText, Stroke, Style, TextStyle,
+    Theme, Ui, Vec2,
 };
 
 /// Width of the column of names in the panel, in points.
@@ -28,6 +29,12 @@ pub(super) const ACCENT_ON_PICTURE: Color32 = Tones::DARK.accent;
 /// The accent of the theme in use.
 pub(super) fn accent(visuals: &egui::Visuals) -> Color32 {
     if visuals.dark_mode { Tones::DARK.accent } else { Tones::LIGHT.accent }
+}
+
+/// The button of the likeliest choice.
+pub(super) fn main_button(ui: &Ui, text: &str) -> Button<'static> {
+    let text = RichText::new(text).color(ui.visuals().strong_text_color());
+    Button::new(text).fill(ui.visuals().selection.bg_fill)
 }
 
 /// Around what a modal box holds.

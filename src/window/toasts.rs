@@ -6,9 +6,13 @@ use std::time::Duration;
 
 /// How long a message that needs no answer stays.
 const SHOWN_FOR: Duration = Duration::from_secs(6);
+/// How long a hint stays, which has to be read beside a picture that is new.
+const HINT_SHOWN_FOR: Duration = Duration::from_secs(20);
 /// More than this at once would hide the picture. What passes by makes room; errors wait unseen
 /// until newer ones are closed.
 const MOST: usize = 4;
+/// A message is broken into lines of at most this width, in points.
+const TEXT_WIDTH: f32 = 440.0;
 
 /// The messages on show, oldest first.
 #[derive(Debug, Default)]
@@ -39,17 +43,30 @@ enum Kind {
 impl Toasts {
     /// Says something that passes by.
     pub(super) fn say(&mut self, text: impl Into<String>) {
-        self.push(text.into(), Kind::Passing);
+        self.push(text.into(), Kind::Passing, SHOWN_FOR);
+    }
+
+    /// Says something that passes by, in place of what was said with the same beginning.
+    pub(super) fn say_anew(&mut self, beginning: &str, rest: &str) {
+        let is_old =
+            |toast: &Toast| toast.kind == Kind::Passing && toast.text.starts_with(beginning);
+        self.shown.retain(|toast| !is_old(toast));
+        self.say(format!("{beginning}{rest}"));
+    }
+
+    /// Says something that passes by slowly.
+    pub(super) fn hint(&mut self, text: impl Into<String>) {
+        self.push(text.into(), Kind::Passing, HINT_SHOWN_FOR);
     }
 
     /// Says what went wrong; stays until it is closed.
     pub(super) fn fail(&mut self, text: impl Into<String>) {
-        self.push(text.into(), Kind::Error);
+        self.push(text.into(), Kind::Error, SHOWN_FOR);
     }
 
     /// Says what was not as it should be; stays until it is closed.
     pub(super) fn warn(&mut self, text: impl Into<String>) {
-        self.push(text.into(), Kind::Warning);
+        self.push(text.into(), Kind::Warning, SHOWN_FOR);
     }
 
     /// Takes back what was said, where it is still there: it is so no longer.
@@ -72,14 +89,15 @@ impl Toasts {
         let mut closed = Vec::new();
         let mut above = 0.0;
         for toast in self.shown.iter_mut().rev().take(MOST) {
+            // What passes by is in nobody's way: the hand goes through it to the picture.
             let area = egui::Area::new(Id::unique(("toast", toast.id)))
                 .order(egui::Order::Foreground)
+                .interactable(toast.kind != Kind::Passing)
                 .pivot(Align2::CENTER_BOTTOM)
                 .fixed_pos(bottom_center - Vec2::new(0.0, above))
                 .show(ctx, |ui| toast_ui(ui, toast));
             above += area.response.rect.height() + 8.0;
-            let read = area.response.contains_pointer();
-            if toast.kind == Kind::Passing && !read {
+            if toast.kind == Kind::Passing {
                 toast.left = toast.left.saturating_sub(passed);
             }
             if area.inner || toast.left.is_zero() {
@@ -92,10 +110,10 @@ impl Toasts {
         }
     }
 
-    fn push(&mut self, text: String, kind: Kind) {
+    fn push(&mut self, text: String, kind: Kind, left: Duration) {
         self.shown.retain(|toast| toast.text != text);
         self.n_ever += 1;
-        self.shown.push(Toast { id: self.n_ever, text, kind, left: SHOWN_FOR });
+        self.shown.push(Toast { id: self.n_ever, text, kind, left });
         while MOST < self.shown.len() {
             let oldest = self.shown.iter().position(|toast| toast.kind == Kind::Passing);
             match oldest {
@@ -119,16 +137,16 @@ fn toast_ui(ui: &mut egui::Ui, toast: &Toast) -> bool {
         .show(ui, |ui| {
             ui.set_max_width(520.0);
             ui.horizontal(|ui| {
-                let text = match toast.kind {
-                    Kind::Passing | Kind::Warning => RichText::new(&toast.text),
-                    Kind::Error => RichText::new(&toast.text).strong(),
+                let (text, stays) = match toast.kind {
+                    Kind::Passing => (RichText::new(&toast.text), false),
+                    Kind::Warning => (RichText::new(&toast.text), true),
+                    Kind::Error => (RichText::new(&toast.text).strong(), true),
                 };
-                let width = 440.0;
                 ui.scope(|ui| {
-                    ui.set_max_width(width);
-                    ui.add(egui::Label::new(text).wrap().selectable(true));
+                    ui.set_max_width(TEXT_WIDTH);
+                    ui.add(egui::Label::new(text).wrap().selectable(stays));
                 });
-                ui.button("Close").on_hover_text("closes this message (Esc)").clicked()
+                stays && ui.button("Close").on_hover_text("closes this message (Esc)").clicked()
             })
             .inner
         })
@@ -151,6 +169,17 @@ mod tests {
         }
         let texts: Vec<&str> = toasts.shown.iter().map(|toast| toast.text.as_str()).collect();
         assert_eq!(texts, ["b", "c", "d", "e"], "other messages are shown");
+    }
+
+    #[test]
+    fn what_is_said_anew_takes_the_place_of_what_was_said() {
+        let mut toasts = Toasts::default();
+        toasts.fail("text at fault");
+        for percent in ["110 %", "120 %"] {
+            toasts.say_anew("text at ", percent);
+        }
+        let texts: Vec<&str> = toasts.shown.iter().map(|toast| toast.text.as_str()).collect();
+        assert_eq!(texts, ["text at fault", "text at 120 %"], "other messages are shown");
     }
 
     #[test]

@@ -9,6 +9,15 @@ use super::views::View;
 use crate::scene::description::ToneMappingDescription;
 use egui::{Button, RichText, Ui};
 
+/// Controls have their names beside them in a window at least this wide, in points.
+const NAMED_FROM: f32 = 1200.0;
+/// Below this width exposure and zoom are left to the panel.
+const WHOLE_FROM: f32 = 920.0;
+/// Below this width buttons are icons; their tooltips say the rest.
+const TEXTS_FROM: f32 = 760.0;
+/// Less room than this is not worth a title, in points.
+const LEAST_TITLE: f32 = 24.0;
+
 /// What the bar shows.
 pub(super) struct ToolbarFacts<'a> {
     /// Name of the open scene.
@@ -44,6 +53,8 @@ pub(super) enum ToolbarChoice {
     File(std::path::PathBuf),
     /// Show the box for a path.
     PathBox,
+    /// Close the window.
+    Quit,
 }
 
 /// Shows the bar; gives back what was chosen.
@@ -64,9 +75,12 @@ pub(super) fn toolbar_ui(
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             if !facts.start_shown {
-                let panel = Button::selectable(facts.panel_shown, (Icon::Panel.atom(), "Panel"));
+                let panel = match TEXTS_FROM <= width(ui) {
+                    true => Button::selectable(facts.panel_shown, (Icon::Panel.atom(), "Panel")),
+                    false => Button::selectable(facts.panel_shown, Icon::Panel.atom()),
+                };
                 let help = facts.keys.hint("the panel with all settings", Action::TogglePanel);
-                if ui.add(panel).on_hover_text(help).clicked() {
+                if ui.add(panel).accessible_name("Panel").on_hover_text(help).clicked() {
                     chosen = Some(ToolbarChoice::Do(Action::TogglePanel));
                 }
             }
@@ -80,8 +94,12 @@ pub(super) fn toolbar_ui(
                 &mut chosen,
             );
             if !facts.start_shown {
-                zoom_ui(ui, display);
-                exposure_ui(ui, tone);
+                if WHOLE_FROM <= width(ui) {
+                    zoom_ui(ui, display);
+                    name_ui(ui, "Zoom");
+                    exposure_ui(ui, tone);
+                    name_ui(ui, "Exposure");
+                }
                 title_ui(ui, facts);
             }
         });
@@ -122,6 +140,9 @@ fn title_ui(ui: &mut Ui, facts: &ToolbarFacts<'_>) {
     let dot = if facts.has_unsaved { " •" } else { "" };
     let title = RichText::new(format!("{}{dot}", facts.title)).weak();
     ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+        if ui.available_width() < LEAST_TITLE {
+            return;
+        }
         ui.add_space(10.0);
         let told = if facts.has_unsaved { "has edits that are not saved" } else { "saved" };
         ui.add(egui::Label::new(title).truncate()).on_hover_text(told);
@@ -154,6 +175,11 @@ fn menus(ui: &mut Ui, facts: &ToolbarFacts<'_>, chosen: &mut Option<ToolbarChoic
         item(ui, keys, "Snapshot", Action::Snapshot, chosen);
         item(ui, keys, "Render picture…", Action::RenderPicture, chosen);
         item(ui, keys, "Copy picture", Action::CopyImage, chosen);
+        ui.separator();
+        let quit = if cfg!(target_os = "macos") { "Cmd+Q" } else { "Ctrl+Q" };
+        if ui.add(Button::new("Quit").shortcut_text(quit)).clicked() {
+            *chosen = Some(ToolbarChoice::Quit);
+        }
     });
     ui.menu_button("View", |ui| {
         item(ui, keys, "Frame all", Action::FrameAll, chosen);
@@ -215,10 +241,27 @@ fn button(
     enabled: bool,
     chosen: &mut Option<ToolbarChoice>,
 ) {
-    let response = ui
-        .add_enabled(enabled, Button::new((icon.atom(), text)).frame_when_inactive(false).gap(5.0));
+    let button = match TEXTS_FROM <= width(ui) {
+        true => Button::new((icon.atom(), text)),
+        false => Button::new(icon.atom()),
+    };
+    let button = button.frame_when_inactive(false).gap(5.0);
+    let response = ui.add_enabled(enabled, button).accessible_name(text);
     if response.on_hover_text(keys.hint(help, action)).clicked() {
         *chosen = Some(ToolbarChoice::Do(action));
+    }
+}
+
+/// Width of the window, in points.
+fn width(ui: &Ui) -> f32 {
+    ui.ctx().content_rect().width()
+}
+
+/// The name of the control on its right, where there is room for it.
+fn name_ui(ui: &mut Ui, name: &str) {
+    if NAMED_FROM <= width(ui) {
+        ui.add_space(4.0);
+        ui.weak(name);
     }
 }
 

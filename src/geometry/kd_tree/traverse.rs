@@ -39,6 +39,11 @@ impl Walk {
         }
         (t_min <= t_max).then_some(Self { origin, reciprocal, pad, t_min, t_max })
     }
+
+    /// The parameter at which the ray enters the box, 0 from inside.
+    pub fn enters_at(&self) -> f32 {
+        self.t_min
+    }
 }
 
 /// By how much planes are moved, from the largest coordinates of an origin and of the tree.

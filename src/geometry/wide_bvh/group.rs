@@ -105,6 +105,12 @@ impl<I: Isa> Group<I> {
         self.negative[axis] = negative;
     }
 
+    /// Rays that go no further.
+    #[inline(always)]
+    pub(super) fn dismiss(&mut self, rays: u32) {
+        self.limit = self.limit.blend(I::F16::splat(-1.0), rays);
+    }
+
     /// Which rays touch a box before their limits, and where they enter it.
     #[inline(always)]
     pub(super) fn touches(&self, node: &Node, child: usize) -> (u32, I::F16) {

@@ -14,6 +14,7 @@ mod packet;
 mod sharing;
 mod single;
 mod stream;
+mod waiting;
 
 use std::cell::RefCell;
 use std::sync::atomic::AtomicBool;
@@ -23,6 +24,7 @@ use glam::Vec3;
 use crate::geometry::lanes::{Isa, Portable};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::nearest::{Nearest, Search};
+use crate::geometry::wide_bvh::descent::Start;
 use crate::geometry::wide_bvh::stream::{Fleet, TakeAny, TakeNearest};
 use crate::geometry::{Stopped, TraversalCost};
 use crate::math::{Aabb, Ray, RayBatch};
@@ -144,6 +146,12 @@ impl WideBvh {
         Ok(Self { nodes: tree.nodes, blocks: tree.blocks, root, magnitude })
     }
 
+    /// Where a ray begins that goes alone.
+    #[inline(always)]
+    fn start(&self) -> Start {
+        Start { reference: self.root, enter: 0.0 }
+    }
+
     /// Has a node or a block fetched.
     #[inline(always)]
     fn prefetch<I: Isa>(&self, reference: u32) {
@@ -173,7 +181,7 @@ impl WideBvh {
 
     /// Takes the hits of one ray in object space into a search.
     pub(super) fn intersect(&self, ray: &Ray, object: u32, search: &mut Search) {
-        dispatch::intersect(self, ray, object, search);
+        FLEET.with_borrow_mut(|fleet| dispatch::intersect(self, ray, fleet, object, search));
     }
 
     /// [`WideBvh::intersect`] that adds up what it takes, the same on every machine.
@@ -185,11 +193,6 @@ impl WideBvh {
         cost: &mut TraversalCost,
     ) {
         single::nearest_counted(self, ray, object, search, cost);
-    }
-
-    /// Whether anything but the ray's source lies between its ends.
-    pub(super) fn occluded(&self, ray: &Ray, object: u32) -> bool {
-        dispatch::occluded(self, ray, object)
     }
 
     /// [`WideBvh::intersect`] for many rays, one `nearest` each.
@@ -205,7 +208,8 @@ impl WideBvh {
         });
     }
 
-    /// [`WideBvh::occluded`] for many rays; those already blocked are left out.
+    /// Whether anything but its source lies between the ends of each ray; those already blocked are left
+    /// out.
     pub(super) fn occluded_batch(&self, rays: &RayBatch, object: u32, blocked: &mut [bool]) {
         let (t_max, source) = (&rays.t_max[..], &rays.source[..]);
         FLEET.with_borrow_mut(|fleet| {
@@ -256,8 +260,8 @@ mod dispatch {
     }
 
     compiled! {
-        intersect => single::nearest, (ray: &Ray, object: u32, search: &mut Search) -> ();
-        occluded => single::blocked, (ray: &Ray, object: u32) -> bool;
+        intersect => single::nearest,
+            (ray: &Ray, fleet: &mut Fleet, object: u32, search: &mut Search) -> ();
         intersect_batch => packet::nearest,
             (rays: &RayBatch, fleet: &mut Fleet, hits: &mut TakeNearest<'_>) -> ();
         occluded_batch => packet::blocked,

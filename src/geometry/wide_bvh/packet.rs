@@ -6,23 +6,22 @@
 //! box go on with it. A triangle is tested against sixteen rays, or, where few touch the box of a
 //! large mesh's block, four rays against its four triangles at once. Rays that begin near each other
 //! and part soon go together as far as several of them touch the same boxes; from there on they are
-//! left to [`stream`].
+//! left to [`stream`]. Packets count what they cost and spare, so that rays go alone where that is
+//! less, as among leaves of a tree or long beams.
 //!
 //! Source: S. Boulos, I. Wald and C. Benthin, "Adaptive Ray Packet Reordering", IEEE RT 2008, for
 //! interval tests of packets.
 
 use crate::geometry::lanes::{Isa, Lanes};
-use crate::geometry::wide_bvh::descent::{STARTS, Start};
 use crate::geometry::wide_bvh::group::{Group, LANES};
-use crate::geometry::wide_bvh::sharing::{Share, Sharing};
+use crate::geometry::wide_bvh::sharing::{Share, Sharing, Toll};
 use crate::geometry::wide_bvh::stream::{self, Fleet, Take, TakeAny, TakeNearest};
+use crate::geometry::wide_bvh::waiting::{Entry, Stack, Stragglers};
 use crate::geometry::wide_bvh::{Block, LEAF, Node, WIDTH, WideBvh};
 use crate::math::RayBatch;
 
 /// Groups of a packet.
 pub(super) const GROUPS: usize = 4;
-/// Seven children a level may wait; the builder keeps the tree below 22 levels.
-const STACK: usize = 160;
 
 /// The nearest hit of every ray of a batch.
 #[inline(always)]
@@ -63,10 +62,10 @@ fn trace<I: Isa, T: Take>(bvh: &WideBvh, rays: &RayBatch, fleet: &mut Fleet, hit
             } else {
                 packet.walk::<T, false>(bvh, hits);
             }
-            packet.stragglers.hand_over(first, fleet);
+            packet.stragglers.hand_over(bvh, first, fleet);
+            sharing.learn(packet.toll);
         } else {
-            let start = [Start { reference: bvh.root, enter: 0.0 }];
-            (first..first + n).for_each(|ray| fleet.push(ray, &start));
+            (first..first + n).for_each(|ray| fleet.push(ray, &[bvh.start()]));
         }
         first += n;
     }
@@ -86,6 +85,8 @@ struct Packet<I: Isa> {
     n_alone: usize,
     stragglers: Stragglers,
     stack: Stack,
+    /// Of the packet under way.
+    toll: Toll,
 }
 
 /// Bounds of a packet's reciprocal directions and origins along one axis, all directions having the
@@ -114,7 +115,8 @@ impl<I: Isa> Packet<I> {
             intervals: [None; 3],
             n_alone: 0,
             stragglers: Stragglers::NONE,
-            stack: Stack { entries: [Entry::NONE; STACK], n: 0 },
+            stack: Stack::EMPTY,
+            toll: Toll::default(),
         }
     }
 
@@ -124,6 +126,8 @@ impl<I: Isa> Packet<I> {
         self.n_groups = n.div_ceil(LANES);
         self.first = first;
         self.farthest = -1.0;
+        // Alone, each would ask the root.
+        self.toll = Toll { paid: 0, spared: n as u32 };
         for (index, group) in self.groups[..self.n_groups].iter_mut().enumerate() {
             let offset = index * LANES;
             let mut limits = [-1.0; LANES];
@@ -228,6 +232,7 @@ impl<I: Isa> Packet<I> {
         let mut enters = [0.0; WIDTH];
         enter.store(&mut enters);
         let base = self.stack.n;
+        self.toll.paid += left.count_ones() * groups.count_ones();
         while left != 0 {
             let child = left.trailing_zeros() as usize;
             left &= left - 1;
@@ -242,9 +247,15 @@ impl<I: Isa> Packet<I> {
                     rays[group] = touch as u16;
                 }
                 let n = touch.count_ones() as usize;
-                let stays =
-                    n > self.n_alone || (n > 0 && !self.stragglers.add(touch, entered, reference));
-                touching |= u32::from(stays) << group;
+                if n > self.n_alone {
+                    touching |= 1 << group;
+                    self.toll.spared += n as u32;
+                } else if n > 0 {
+                    let lost = self.stragglers.add(touch, entered, reference);
+                    if lost != 0 {
+                        self.groups[group].dismiss(lost);
+                    }
+                }
             }
             if touching != 0 {
                 if FAR || self.n_alone > 0 {
@@ -269,6 +280,7 @@ impl<I: Isa> Packet<I> {
     ) -> bool {
         let mut left = entry.groups;
         let mut is_changed = false;
+        self.toll.paid += left.count_ones() * block.n_triangles();
         while left != 0 {
             let index = left.trailing_zeros() as usize % GROUPS;
             left &= left - 1;
@@ -286,84 +298,5 @@ impl<I: Isa> Packet<I> {
             }
         }
         is_changed
-    }
-}
-
-/// Rays of a group that go on alone from some places.
-struct Stragglers {
-    n: [u8; LANES],
-    starts: [[Start; STARTS]; LANES],
-}
-
-impl Stragglers {
-    const NONE: Self =
-        Self { n: [0; LANES], starts: [[Start { reference: 0, enter: 0.0 }; STARTS]; LANES] };
-
-    /// Notes a place for some rays, which may be none; `false` where one has too many already.
-    #[inline(always)]
-    fn add<F: Lanes>(&mut self, rays: u32, entered: F, reference: u32) -> bool {
-        let mut enters = [0.0; LANES];
-        entered.store(&mut enters);
-        let mut left = rays;
-        while left != 0 {
-            let lane = left.trailing_zeros() as usize;
-            left &= left - 1;
-            let Some(start) = self.starts[lane].get_mut(usize::from(self.n[lane])) else {
-                return false;
-            };
-            *start = Start { reference, enter: enters[lane] };
-            self.n[lane] += 1;
-        }
-        true
-    }
-
-    /// Lets them wait for the stream; `first` is the place of the group in its batch.
-    #[inline(always)]
-    fn hand_over(&mut self, first: usize, fleet: &mut Fleet) {
-        for (lane, n) in self.n.iter_mut().enumerate() {
-            if *n > 0 {
-                fleet.push(first + lane, &self.starts[lane][..usize::from(*n)]);
-                *n = 0;
-            }
-        }
-    }
-}
-
-/// A place that waits, with the parameter at which it is entered, the groups that go there, and which
-/// of their rays.
-#[derive(Clone, Copy)]
-struct Entry {
-    reference: u32,
-    enter: f32,
-    groups: u32,
-    rays: [u16; GROUPS],
-}
-
-impl Entry {
-    const NONE: Self = Self { reference: 0, enter: 0.0, groups: 0, rays: [0; GROUPS] };
-}
-
-struct Stack {
-    entries: [Entry; STACK],
-    n: usize,
-}
-
-impl Stack {
-    /// Keeps what lies above `base` in order, the nearest on top.
-    #[inline(always)]
-    fn insert(&mut self, base: usize, entry: Entry) {
-        let mut place = self.n;
-        while place > base && self.entries[place - 1].enter < entry.enter {
-            self.entries[place] = self.entries[place - 1];
-            place -= 1;
-        }
-        self.entries[place] = entry;
-        self.n += 1;
-    }
-
-    #[inline(always)]
-    fn pop(&mut self) -> Option<Entry> {
-        self.n = self.n.checked_sub(1)?;
-        Some(self.entries[self.n])
     }
 }

@@ -4,7 +4,7 @@ use crate::geometry::TraversalCost;
 use crate::geometry::lanes::{Isa, Portable};
 use crate::geometry::nearest::Search;
 use crate::geometry::wide_bvh::descent::{DONE, Descent};
-use crate::geometry::wide_bvh::stream::{Take, TakeAny};
+use crate::geometry::wide_bvh::stream::{Fleet, Take};
 use crate::geometry::wide_bvh::{BLOCK, LEAF, WideBvh};
 use crate::math::{PrimitiveId, Ray};
 
@@ -28,10 +28,29 @@ impl Take for TakeOne<'_> {
     }
 }
 
-/// The hit that the search is for.
+/// The hits that the search is for.
 #[inline(always)]
-pub(super) fn nearest<I: Isa>(bvh: &WideBvh, ray: &Ray, object: u32, search: &mut Search) {
-    trace::<I, _>(bvh, ray, &mut TakeOne { search, object });
+pub(super) fn nearest<I: Isa>(
+    bvh: &WideBvh,
+    ray: &Ray,
+    fleet: &mut Fleet,
+    object: u32,
+    search: &mut Search,
+) {
+    let mut hits = TakeOne { search, object };
+    let limit = hits.limit(0);
+    if limit < 0.0 {
+        return;
+    }
+    let descent = fleet.single();
+    descent.start(bvh, ray, limit);
+    while descent.current != DONE {
+        if descent.current & LEAF == 0 {
+            descent.enter::<I, TakeOne<'_>>(&bvh.nodes[descent.current as usize]);
+        } else {
+            descent.visit::<I, _>(bvh, 0, &mut hits);
+        }
+    }
 }
 
 /// The same, with what it takes, in the arithmetic that every machine has.
@@ -52,32 +71,6 @@ pub(super) fn nearest_counted(
         } else {
             cost.n_primitives += BLOCK as u32;
             descent.visit::<Portable, _>(bvh, 0, &mut hits);
-        }
-    }
-}
-
-/// Whether there is any hit.
-#[inline(always)]
-pub(super) fn blocked<I: Isa>(bvh: &WideBvh, ray: &Ray, object: u32) -> bool {
-    let mut blocked = [false];
-    let (t_max, source) = (&[ray.t_max], &[ray.source]);
-    trace::<I, _>(bvh, ray, &mut TakeAny { blocked: &mut blocked, t_max, source, object });
-    blocked[0]
-}
-
-#[inline(always)]
-fn trace<I: Isa, T: Take>(bvh: &WideBvh, ray: &Ray, hits: &mut T) {
-    let limit = hits.limit(0);
-    if limit < 0.0 {
-        return;
-    }
-    let mut descent = Descent::IDLE;
-    descent.start(bvh, ray, limit);
-    while descent.current != DONE {
-        if descent.current & LEAF == 0 {
-            descent.enter::<I, T>(&bvh.nodes[descent.current as usize]);
-        } else {
-            descent.visit::<I, T>(bvh, 0, hits);
         }
     }
 }

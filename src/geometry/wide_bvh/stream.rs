@@ -103,6 +103,12 @@ impl Fleet {
         self.waiting.push(Waiting { ray: ray as u32, first, n: starts.len() as u32 });
     }
 
+    /// A place for one ray, while no others are under way.
+    #[inline(always)]
+    pub(super) fn single(&mut self) -> &mut Descent {
+        &mut self.descents[0]
+    }
+
     /// Forgets the rays that waited.
     #[inline(always)]
     pub(super) fn clear(&mut self) {

@@ -31,7 +31,7 @@ mod write;
 
 pub use keys::{Key, Presence, Rule, Section};
 pub use overrides::{Override, OverrideError};
-pub use parameters::{EditError, get, has_default, parameters, with_default, with_value};
+pub use parameters::{EditError, get, has_default, parameters, values, with_default, with_value};
 pub use path::{ParameterPath, PathError};
 pub use range::{LARGEST, LARGEST_LIGHT, Outside, Range, SMALLEST};
 #[cfg(feature = "window")]

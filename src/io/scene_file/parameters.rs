@@ -26,6 +26,16 @@ pub fn parameters(scene: &SceneDescription) -> Vec<ParameterPath> {
     all_paths(&table_of(scene))
 }
 
+/// All parameters that have a value, with it.
+pub fn values(scene: &SceneDescription) -> Vec<(ParameterPath, Value)> {
+    let root = table_of(scene);
+    let known = |path: ParameterPath| {
+        let value = path.resolve(&root).ok()?.get(&root)?.clone();
+        Some((path, value))
+    };
+    all_paths(&root).into_iter().filter_map(known).collect()
+}
+
 /// The value of a parameter; `None` where it is absent and has no default that is a value, such
 /// as `camera.focal_distance`.
 pub fn get(scene: &SceneDescription, path: &ParameterPath) -> Result<Option<Value>, PathError> {

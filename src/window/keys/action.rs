@@ -71,7 +71,70 @@ pub(in crate::window) enum Action {
     Cancel,
 }
 
+/// What the help lists together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::window) enum Group {
+    /// Where the picture is taken from, and through which lens.
+    Camera,
+    /// The picture and how it is shown.
+    Picture,
+    /// Files and edits.
+    Scene,
+    /// The window itself.
+    Window,
+}
+
+impl Group {
+    /// The title in the help.
+    pub(in crate::window) fn title(self) -> &'static str {
+        match self {
+            Self::Camera => "Camera",
+            Self::Picture => "Picture",
+            Self::Scene => "Scene",
+            Self::Window => "Window",
+        }
+    }
+}
+
 impl Action {
+    /// Where the help lists it.
+    pub(in crate::window) fn group(self) -> Group {
+        match self {
+            Self::FrameAll
+            | Self::HomeCamera
+            | Self::ViewFront
+            | Self::ViewSide
+            | Self::ViewTop
+            | Self::ToggleLens => Group::Camera,
+            Self::Pause
+            | Self::Restart
+            | Self::Brighter
+            | Self::Darker
+            | Self::NextOperator
+            | Self::Snapshot
+            | Self::RenderPicture
+            | Self::CopyImage
+            | Self::Compare
+            | Self::ShowPinned
+            | Self::Show(_)
+            | Self::Loupe => Group::Picture,
+            Self::Save
+            | Self::SaveAs
+            | Self::Open
+            | Self::Gallery
+            | Self::CloseScene
+            | Self::Undo
+            | Self::Redo => Group::Scene,
+            Self::TogglePanel
+            | Self::FullScreen
+            | Self::LargerText
+            | Self::SmallerText
+            | Self::UsualText
+            | Self::Help
+            | Self::Cancel => Group::Window,
+        }
+    }
+
     /// As the file of keys calls it: `frame-all`.
     pub(in crate::window) fn name(self) -> String {
         let mut name = String::new();

@@ -21,6 +21,7 @@ pub(super) use objects::{objects_ui, report_ui};
 pub(super) use render::{Limits, RenderFacts, SizeMode, limits_ui, render_ui};
 pub(super) use textures::textures_ui;
 
+use super::structure::Part;
 use super::theme;
 use egui::collapsing_header::CollapsingState;
 use egui::{Align, Id, Sense, TextStyle, Ui, Vec2};
@@ -49,6 +50,8 @@ pub(super) struct Selection {
     pub(super) object: usize,
     /// Whether alpha_x and alpha_y move together.
     pub(super) alphas_linked: bool,
+    /// The part, by name, whose file is to be chosen: a picture for a texture, a mesh for an object.
+    pub(super) wants_file: Option<(Part, String)>,
     /// The name being typed, while it is not yet given.
     pub(super) renaming: Option<parts::Renaming>,
 }

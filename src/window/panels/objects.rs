@@ -5,7 +5,7 @@ use super::{Selection, path_segment, subheading};
 use crate::scene::description::{
     NormalsKind, ObjectDescription, ObjectKind, OneOrThree, SceneDescription,
 };
-use crate::window::fields::entered_text;
+use crate::window::fields::{FileLine, file_line};
 use crate::window::structure::{self, Part};
 use crate::window::widgets::{Figure, LENGTH, choice, pick_one, row, switch, triple};
 use egui::Ui;
@@ -36,7 +36,7 @@ pub(in crate::window) fn objects_ui(
     let materials: Vec<String> =
         scene.materials.iter().map(|material| material.name.clone()).collect();
     if let Some(object) = index.and_then(|index| scene.objects.get_mut(index)) {
-        object_ui(ui, object, &materials, reach);
+        object_ui(ui, object, &materials, reach, &mut selection.wants_file);
     }
 }
 
@@ -51,7 +51,13 @@ pub(in crate::window) fn report_ui(ui: &mut Ui, report: &[String]) {
     }
 }
 
-fn object_ui(ui: &mut Ui, object: &mut ObjectDescription, materials: &[String], reach: f64) {
+fn object_ui(
+    ui: &mut Ui,
+    object: &mut ObjectDescription,
+    materials: &[String],
+    reach: f64,
+    wants_file: &mut Option<(Part, String)>,
+) {
     let prefix = format!("objects.{}", path_segment(&object.name));
     let path = |key: &str| format!("{prefix}.{key}");
     let help = "off: as if it were not there";
@@ -59,15 +65,16 @@ fn object_ui(ui: &mut Ui, object: &mut ObjectDescription, materials: &[String], 
     row(ui, "Shape", "", |ui| {
         let shown =
             KINDS.iter().find(|(kind, _)| *kind == object.kind).map_or("", |(_, name)| name);
-        // A mesh needs its file first.
-        let offered: Vec<(ObjectKind, &str)> = KINDS
-            .into_iter()
-            .filter(|(kind, _)| *kind != ObjectKind::Mesh || object.file.is_some())
-            .collect();
-        let names = offered.iter().map(|(_, name)| *name);
-        if let Some(index) = pick_one(ui, "Shape", &path("type"), shown, names) {
-            object.kind = offered[index].0;
-            structure::complete(object, reach * 0.12);
+        let names = KINDS.iter().map(|(_, name)| *name);
+        if let Some(picked) = pick_one(ui, "Shape", &path("type"), shown, names) {
+            let kind = KINDS[picked].0;
+            if kind == ObjectKind::Mesh && object.file.is_none() {
+                // It becomes one with its file.
+                *wants_file = Some((Part::Object, object.name.clone()));
+            } else {
+                object.kind = kind;
+                structure::complete(object, reach * 0.12);
+            }
         }
     });
     row(ui, "Made of", "", |ui| {
@@ -79,12 +86,13 @@ fn object_ui(ui: &mut Ui, object: &mut ObjectDescription, materials: &[String], 
             Some(index) => object.material = Some(materials[index - 1].clone()),
         }
     });
-    let file = object.file.clone().unwrap_or_default();
-    let help = "an OBJ file, relative to the scene; entering one makes this object a mesh";
-    let hint = "path of an OBJ file";
-    if let Some(file) = entered_text(ui, "Mesh file", help, hint, &path("file"), &file) {
-        object.file = Some(file);
-        object.kind = ObjectKind::Mesh;
+    if let Some(file) = object.file.clone() {
+        let help = "an OBJ file, relative to the scene";
+        match file_line(ui, "Mesh file", help, "path of an OBJ file", &path("file"), &file) {
+            FileLine::Left => {}
+            FileLine::Entered(file) => object.file = Some(file),
+            FileLine::Choose => *wants_file = Some((Part::Object, object.name.clone())),
+        }
     }
     transform_ui(ui, object, reach);
     shape_ui(ui, object, reach);

@@ -109,7 +109,7 @@ pub(in crate::window) fn render_ui(
         .show_integer(ui, &mut threads);
     *n_threads = threads as usize;
     if facts.accelerators.len() > 1 {
-        row(ui, "Tree", "finds what rays meet; the picture is the same with each", |ui| {
+        row(ui, "Accelerator", "finds what rays meet; the picture is the same with each", |ui| {
             let shown = facts.accelerators[(*accelerator).min(facts.accelerators.len() - 1)];
             let names = facts.accelerators.iter().copied();
             if let Some(index) = pick_one(ui, "Accelerator", "", shown, names) {

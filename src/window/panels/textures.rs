@@ -5,7 +5,7 @@ use super::parts::part_list;
 use super::{Selection, path_segment, subheading};
 use crate::scene::description::{SceneDescription, TextureDescription, TextureKind, Triple};
 use crate::window::color::swatch;
-use crate::window::fields::entered_text;
+use crate::window::fields::{FileLine, file_line};
 use crate::window::presets;
 use crate::window::structure::Part;
 use crate::window::theme::ROW_HEIGHT;
@@ -35,7 +35,7 @@ pub(in crate::window) fn textures_ui(
         part_list(ui, scene, Part::Texture, &mut selection.texture, &mut selection.renaming);
     if let Some(texture) = index.and_then(|index| scene.textures.get_mut(index)) {
         preview(ui, texture);
-        texture_ui(ui, texture);
+        texture_ui(ui, texture, &mut selection.wants_file);
     }
     subheading(ui, "Background");
     let names: Vec<(String, bool)> =
@@ -51,7 +51,11 @@ pub(in crate::window) fn textures_ui(
     );
 }
 
-fn texture_ui(ui: &mut Ui, texture: &mut TextureDescription) {
+fn texture_ui(
+    ui: &mut Ui,
+    texture: &mut TextureDescription,
+    wants_file: &mut Option<(Part, String)>,
+) {
     row(ui, "Preset", "replaces the look, keeps the name", |ui| {
         let names = presets::TEXTURES.iter().map(|preset| preset.name);
         if let Some(index) = pick_one(ui, "Texture preset", "", "choose…", names) {
@@ -62,23 +66,26 @@ fn texture_ui(ui: &mut Ui, texture: &mut TextureDescription) {
     row(ui, "Pattern", "", |ui| {
         let shown =
             KINDS.iter().find(|(kind, _)| *kind == texture.kind).map_or("", |(_, name)| name);
-        // A pattern from a file needs the file first.
-        let offered: Vec<(TextureKind, &str)> = KINDS
-            .into_iter()
-            .filter(|(kind, _)| *kind != TextureKind::Image || texture.file.is_some())
-            .collect();
-        let names = offered.iter().map(|(_, name)| *name);
+        let names = KINDS.iter().map(|(_, name)| *name);
         if let Some(picked) = pick_one(ui, "Pattern", &format!("{prefix}.type"), shown, names) {
-            texture.kind = offered[picked].0;
-            fit_colors(texture);
+            let kind = KINDS[picked].0;
+            if kind == TextureKind::Image && texture.file.is_none() {
+                // It becomes one with its file.
+                *wants_file = Some((Part::Texture, texture.name.clone()));
+            } else {
+                texture.kind = kind;
+                fit_colors(texture);
+            }
         }
     });
-    let file = texture.file.clone().unwrap_or_default();
-    let help = "a PNG or JPEG, relative to the scene; entering one makes this texture an image";
-    let (hint, path) = ("path of a picture", format!("{prefix}.file"));
-    if let Some(file) = entered_text(ui, "Image file", help, hint, &path, &file) {
-        texture.file = Some(file);
-        texture.kind = TextureKind::Image;
+    if let Some(file) = texture.file.clone() {
+        let help = "a PNG or JPEG, relative to the scene";
+        let (hint, path) = ("path of a picture", format!("{prefix}.file"));
+        match file_line(ui, "Image file", help, hint, &path, &file) {
+            FileLine::Left => {}
+            FileLine::Entered(file) => texture.file = Some(file),
+            FileLine::Choose => *wants_file = Some((Part::Texture, texture.name.clone())),
+        }
     }
     figures_ui(ui, texture);
     if texture.kind != TextureKind::Image {

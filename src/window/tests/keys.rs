@@ -111,6 +111,8 @@ fn escape_closes_an_open_menu_and_nothing_behind_it() {
 fn a_click_beside_an_open_menu_only_closes_it() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = window(&scene_file(folder.path()), SIZE);
+    harness.state_mut().interface.panel_shown = false;
+    harness.run_steps(3);
     wait_until(&mut harness, |app| app.picture_on_show().is_some());
     let at = harness.get_by_role_and_label(Role::Canvas, "Picture").rect().center();
     for chooses in [false, true] {
@@ -126,7 +128,7 @@ fn a_click_beside_an_open_menu_only_closes_it() {
         harness.drop_at(at);
         harness.run_steps(2);
         wait_until(&mut harness, |app| app.awaited_click.is_none());
-        let told = harness.query_by_label_contains("the panel shows ball").is_some();
+        let told = harness.query_by_label_contains("ball, glaze: shown in the panel").is_some();
         assert_eq!(told, chooses, "the click went to the picture: {told}");
         assert!(harness.query_by_label_contains("Pin and compare").is_none(), "the menu stays");
     }

@@ -131,6 +131,29 @@ fn nothing_of_the_panel_and_the_bars_leaves_the_window_or_overlaps() {
 }
 
 #[test]
+fn the_bar_has_room_for_its_buttons_in_a_window_of_any_width() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene_file(folder.path());
+    for width in [427.0, 683.0, 759.0, 760.0, 800.0, 919.0, 920.0, 1024.0, 1199.0, 1200.0, 1400.0] {
+        let mut harness = window_at(&path, [width, 620.0], 1.0, ThemePreference::Dark);
+        harness.state_mut().interface.panel_shown = false;
+        harness.run_steps(4);
+        let what = format!("{width} points");
+        let bar = Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(width, 38.0));
+        let mut parts = everything(&harness);
+        parts.retain(|(_, rect)| rect.top() < bar.bottom() && rect.bottom() <= bar.bottom());
+        assert_inside(&parts, bar, &what);
+        assert_apart(&parts, &what);
+        for name in ["File", "View", "Undo", "Redo", "Pause", "Render…", "Help", "Panel"] {
+            assert!(parts.iter().any(|(part, _)| part == name), "{what}: {name} is gone");
+        }
+        let n_named =
+            ["Zoom", "Exposure"].map(|name| parts.iter().filter(|(part, _)| part == name).count());
+        assert_eq!(n_named, [usize::from(1200.0 <= width); 2], "{what}: names");
+    }
+}
+
+#[test]
 fn the_picture_takes_what_the_bars_and_the_panel_leave() {
     let folder = tempfile::tempdir().unwrap();
     let path = scene_file(folder.path());
@@ -179,7 +202,7 @@ fn menus_open_whole_and_their_lines_lie_apart() {
 /// Something that opens a box or a page.
 type Opening = fn(&mut Harness<'_, App>);
 
-const BOXES: [(&str, Opening); 12] = [
+const BOXES: [(&str, Opening); 13] = [
     ("the help", |harness| harness.key_press(Key::H)),
     ("the box that renders", |harness| harness.key_press_modifiers(Modifiers::SHIFT, Key::F12)),
     ("the start page", |harness| harness.key_press_modifiers(Modifiers::COMMAND, Key::G)),
@@ -217,6 +240,11 @@ const BOXES: [(&str, Opening); 12] = [
         harness.state_mut().dialogs.type_path(Purpose::Open, "");
     }),
     ("the offer of a copy", |harness| harness.state_mut().recovery.pretend_to_find("copy.png")),
+    ("the offer of a copy and the box for a path", |harness| {
+        harness.state_mut().recovery.pretend_to_find("copy.png");
+        harness.run_steps(2);
+        harness.state_mut().dialogs.type_path(Purpose::Open, "");
+    }),
     ("the pinned picture", |harness| {
         wait_until(harness, |app| app.picture_on_show().is_some());
         harness.key_press(Key::X);

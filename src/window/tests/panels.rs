@@ -2,14 +2,15 @@
 
 use super::bench::{
     ALL, Bench, CAMERA, DISPLAY, LIGHTS, MATERIALS, OBJECTS, RENDER, TEXTURES, bench, choose,
-    harness, noise, press, render_with, slide, type_figure,
+    harness, harness_of, noise, press, render_with, slide, type_figure,
 };
 use super::small_scene;
 use crate::render::Noise;
 use crate::scene::description::{
-    ColorOrTexture, IntegratorKind, LightKind, ToneOperator, WardForm,
+    ColorOrTexture, IntegratorKind, LightKind, ObjectKind, SceneDescription, ToneOperator, WardForm,
 };
 use crate::window::panels::SizeMode;
+use crate::window::structure::Part;
 use crate::window::views::View;
 use egui::Role;
 use egui_kittest::Harness;
@@ -274,34 +275,95 @@ fn display_and_render_follow_their_controls() {
     assert_eq!(rendered.state().size_mode, SizeMode::Fill, "the size stays fixed");
 }
 
-#[test]
-fn a_mesh_is_entered_by_its_path() {
-    let mut harness = harness(OBJECTS);
+/// The small scene with a mesh in place of its ball.
+fn scene_with_mesh() -> SceneDescription {
+    let mut scene = small_scene();
+    scene.objects[0].kind = ObjectKind::Mesh;
+    scene.objects[0].file = Some("a.obj".to_owned());
+    scene
+}
+
+/// Types another path into the field of the mesh.
+fn type_mesh(harness: &mut Harness<'_, Bench>) {
     harness.get_by_role_and_label(Role::TextInput, "Mesh file").click();
     harness.run();
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
     harness.event(egui::Event::Text("meshes/egg.obj".to_owned()));
     harness.run();
-    assert_eq!(harness.state().scene, small_scene(), "every letter counts");
+}
+
+#[test]
+fn a_mesh_is_entered_by_its_path() {
+    let mut harness = harness_of(OBJECTS, bench(scene_with_mesh()));
+    type_mesh(&mut harness);
+    assert_eq!(harness.state().scene, scene_with_mesh(), "every letter counts");
     harness.key_press(egui::Key::Enter);
     harness.run();
     let object = &harness.state().scene.objects[0];
     assert_eq!(object.file.as_deref(), Some("meshes/egg.obj"), "another file");
-    assert_eq!(object.kind, crate::scene::description::ObjectKind::Mesh, "no mesh");
     harness.get_by_role_and_label(Role::CheckBox, "Scale each axis").click();
     harness.run();
     type_figure(&mut harness, "Scale Y", "2");
     let scale = harness.state().scene.objects[0].scale.triple();
     assert_eq!(scale, [1.0, 2.0, 1.0], "another scale");
+    press(&mut harness, "Mesh file: choose");
+    let wanted = Some((Part::Object, "ball".to_owned()));
+    assert_eq!(harness.state().selection.wants_file, wanted, "no file is asked for");
 }
 
 #[test]
 fn a_path_half_typed_is_let_go_by_escape() {
-    let mut harness = harness(OBJECTS);
-    harness.get_by_role_and_label(Role::TextInput, "Mesh file").click();
-    harness.run();
-    harness.event(egui::Event::Text("meshes/egg.obj".to_owned()));
-    harness.run();
+    let mut harness = harness_of(OBJECTS, bench(scene_with_mesh()));
+    type_mesh(&mut harness);
     harness.key_press(egui::Key::Escape);
     harness.run();
-    assert_eq!(harness.state().scene, small_scene(), "it was taken over");
+    assert_eq!(harness.state().scene, scene_with_mesh(), "it was taken over");
+}
+
+#[test]
+fn what_is_made_from_a_file_asks_for_the_file_first() {
+    for (panel, list, option, part, name) in [
+        (OBJECTS, "Shape", "Mesh", Part::Object, "ball"),
+        (TEXTURES, "Pattern", "Image", Part::Texture, "veins"),
+    ] {
+        let mut harness = harness(panel);
+        choose(&mut harness, list, option);
+        let wanted = Some((part, name.to_owned()));
+        assert_eq!(harness.state().selection.wants_file, wanted, "{option} asks for no file");
+        assert_eq!(harness.state().scene, small_scene(), "{option} without its file");
+    }
+}
+
+#[test]
+fn a_colour_is_set_by_its_hex_digits_and_by_the_arrow_keys() {
+    let mut harness = harness(MATERIALS);
+    harness.get_by_role_and_label(Role::ColorWell, "Specular").click();
+    harness.run();
+    let square = "Specular: saturation and brightness";
+    let square = harness.get_by_role_and_label(Role::Slider, square).rect();
+    let field = harness.get_by_role_and_label(Role::TextInput, "Specular: sRGB");
+    assert!((field.rect().right() - square.right()).abs() < 1.5, "the picker is ragged");
+    let blue = harness.get_by_role_and_label(Role::SpinButton, "Specular: blue").rect();
+    assert!((blue.right() - square.right()).abs() < 1.5, "the picker is ragged");
+    field.click();
+    harness.run();
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    harness.event(egui::Event::Text("#ff0000".to_owned()));
+    harness.run();
+    harness.key_press(egui::Key::Enter);
+    harness.run();
+    assert_eq!(harness.state().scene.materials[0].specular, [1.0, 0.0, 0.0], "another colour");
+    harness.get_by_role_and_label(Role::Slider, "Specular: hue").focus();
+    harness.run();
+    harness.key_press(egui::Key::ArrowRight);
+    harness.run();
+    let [red, green, blue] = harness.state().scene.materials[0].specular;
+    assert!(red == 1.0 && 0.05 < green && blue == 0.0, "hue: {red} {green} {blue}");
+    let square = "Specular: saturation and brightness";
+    harness.get_by_role_and_label(Role::Slider, square).focus();
+    harness.run();
+    harness.key_press(egui::Key::ArrowDown);
+    harness.run();
+    let darker = harness.state().scene.materials[0].specular[0];
+    assert!((0.9..0.99).contains(&darker), "brightness: {darker}");
 }

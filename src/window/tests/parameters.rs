@@ -13,11 +13,15 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use std::collections::BTreeMap;
 
-/// Notes that a control of that name edits the parameter of that path.
+type Notes = Vec<(String, String)>;
+
+/// Notes that a control of that name edits the parameter of that path, where a test asks for it.
 pub(in crate::window) fn note(ctx: &egui::Context, label: &str, path: &str) {
     ctx.data_mut(|data| {
-        let notes = data.get_temp_mut_or_default::<Vec<(String, String)>>(notes_id());
-        notes.push((label.to_owned(), path.to_owned()));
+        if let Some(mut notes) = data.remove_temp::<Notes>(notes_id()) {
+            notes.push((label.to_owned(), path.to_owned()));
+            data.insert_temp(notes_id(), notes);
+        }
     });
 }
 
@@ -25,16 +29,12 @@ fn notes_id() -> Id {
     Id::unique("controls and their parameters")
 }
 
-/// Name and path of every control that the last frame showed.
-fn notes(harness: &mut Harness<'_, Bench>) -> Vec<(String, String)> {
-    let take = |harness: &Harness<'_, Bench>| {
-        let taken =
-            harness.ctx.data_mut(|data| data.remove_temp::<Vec<(String, String)>>(notes_id()));
-        taken.unwrap_or_default()
-    };
-    take(harness);
+/// Name and path of every control that the next frame shows.
+fn notes(harness: &mut Harness<'_, Bench>) -> Notes {
+    harness.ctx.data_mut(|data| data.insert_temp(notes_id(), Notes::new()));
     harness.step();
-    take(harness)
+    let taken = harness.ctx.data_mut(|data| data.remove_temp(notes_id()));
+    taken.unwrap_or_default()
 }
 
 /// A scene with one of every type of everything, named by its type.

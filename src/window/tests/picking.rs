@@ -105,10 +105,38 @@ fn a_click_opens_the_groups_of_what_is_there_and_brings_them_into_sight() {
         let seen = 38.0 <= rect.top() && rect.bottom() <= SIZE[1] - 26.0;
         assert!(seen, "{name} is at {rect:?}");
     }
-    // What is in sight stays where it is.
+}
+
+#[test]
+fn a_group_in_sight_stays_where_it_is_when_it_is_clicked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&scene_file(folder.path()), [1024.0, 1100.0]);
+    wait_until(&mut harness, |app| app.picture_on_show().is_some());
+    let title = |harness: &Harness<'_, App>| {
+        harness.get_by_role_and_label(Role::DisclosureTriangle, "Materials").rect().top()
+    };
+    let scroll = |harness: &mut Harness<'_, App>, points: f32| {
+        harness.hover_at(egui::pos2(900.0, 600.0));
+        harness.run_steps(2);
+        harness.event(egui::Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Point,
+            delta: egui::vec2(0.0, points),
+            source: egui::MouseWheelSource::Wheel,
+            phase: egui::TouchPhase::Move,
+            modifiers: Modifiers::NONE,
+        });
+        harness.run_steps(12);
+    };
     click_on_ball(&mut harness);
     harness.run_steps(12);
-    assert_eq!(group(&harness, "Materials").1, materials, "the panel moved for nothing");
+    // Whole in sight, and neither at the top nor at the foot.
+    let to_go = 160.0 - title(&harness);
+    scroll(&mut harness, to_go);
+    let before = title(&harness);
+    assert!((100.0..220.0).contains(&before), "the title is at {before}");
+    click_on_ball(&mut harness);
+    harness.run_steps(12);
+    assert_eq!(title(&harness), before, "the panel moved for nothing");
 }
 
 #[test]

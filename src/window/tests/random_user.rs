@@ -135,9 +135,9 @@ impl User {
         let value = self.near(value);
         let Ok(edited) = with_value(scene, path, value) else { return };
         let asked = get(&edited, path);
-        document.checkpoint("before", None);
+        document.checkpoint(None);
         document.description = edited;
-        document.checkpoint("at random", None);
+        document.checkpoint(None);
         let stays = harness.state().files.loading.is_none();
         harness.run_steps(1);
         if stays && !path.to_string().starts_with("camera.") {

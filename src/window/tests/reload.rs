@@ -95,6 +95,35 @@ fn edits_stay_where_only_a_mesh_is_new() {
     assert!(document.is_dirty(), "the edit counts as saved");
 }
 
+/// A mesh opened alone has its scene made up around it: what was edited stays, the rest follows.
+#[test]
+fn edits_stay_where_a_mesh_opened_alone_grows() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.obj");
+    std::fs::write(&path, TRIANGLE).unwrap();
+    let mut harness = window(&path, SIZE);
+    let first = harness.state().document.description.clone();
+    let document = &mut harness.state_mut().document;
+    document.description.camera.eye[0] += 0.5;
+    document.description.tone_mapping.exposure = 1.0;
+    harness.run_steps(3);
+    let edited = harness.state().document.description.clone();
+    std::fs::write(&path, format!("{TRIANGLE}v 0 -3 9\nf 1 2 4\n")).unwrap();
+    wait_until(&mut harness, |app| {
+        app.document.description.objects[1].point != first.objects[1].point
+    });
+    harness.run_steps(3);
+    let app = harness.state();
+    let now = &app.document.description;
+    assert_eq!(now.camera, edited.camera, "the camera was moved by somebody");
+    assert_eq!(now.tone_mapping.exposure, 1.0, "so was the exposure");
+    assert_eq!(now.objects[1].point.unwrap()[1], -3.0, "the ground is where the mesh stands");
+    assert_ne!(now.lights, first.lights, "the light does not reach it");
+    assert!(app.document.is_dirty(), "the edits count as saved");
+    assert_ne!(app.home_camera, first.camera, "home is before the mesh as it was");
+    assert!(has_said(&harness, "changed a file of the scene"), "it is not told");
+}
+
 #[test]
 fn edits_that_a_changed_scene_replaces_are_one_undo_away_and_it_says_so() {
     let folder = tempfile::tempdir().unwrap();
@@ -128,7 +157,7 @@ fn a_restored_scene_is_kept_again_and_finds_its_files() {
         let mut harness = window_with(&path, SIZE, Some(own.clone()));
         if 0 < round {
             harness.run_steps(3);
-            harness.get_by_role_and_label(Role::Button, "Restore it").click();
+            harness.get_by_role_and_label(Role::Button, "Restore").click();
             wait_until(&mut harness, |app| app.files.title == "restored");
         }
         let app = harness.state();
@@ -197,17 +226,17 @@ fn a_copy_of_edits_goes_once_they_are_saved_or_let_go() {
     harness.key_press(Key::E);
     harness.run_steps(80);
     assert_eq!(std::fs::read(&copy).unwrap(), left_behind, "the copy on offer is overwritten");
-    press(&mut harness, "Let it go");
+    press(&mut harness, "Discard");
     wait_until(&mut harness, |_| {
         std::fs::read(&copy).is_ok_and(|kept| !kept.is_empty() && kept != left_behind)
     });
-    assert!(harness.query_by_label("Restore it").is_none(), "it is offered again");
+    assert!(harness.query_by_label("Restore").is_none(), "it is offered again");
     edit(&mut harness);
     drop(harness);
     let mut harness = window_with(&path, SIZE, Some(own));
-    press(&mut harness, "Restore it");
+    press(&mut harness, "Restore");
     wait_until(&mut harness, |app| app.files.title == "restored");
-    assert!(harness.query_by_label("Restore it").is_none(), "the restored one is offered again");
+    assert!(harness.query_by_label("Restore").is_none(), "the restored one is offered again");
     assert!(harness.state().document.is_dirty(), "what only the copy holds counts as saved");
     assert!(copy.is_file(), "the copy is gone before it is saved");
     let saved = folder.path().join("saved.toml");

@@ -1,12 +1,13 @@
 //! The start page, what is remembered, and messages that stay until they are read.
 
-use super::whole::{harness_of, scene_file, wait_until, window, window_of, window_with};
+use super::whole::{drag, harness_of, scene_file, wait_until, window, window_of, window_with};
 use crate::io::gallery::GALLERY;
 use crate::loader::Source;
 use crate::session::Phase;
 use crate::window::app::App;
 use crate::window::state::{InterfaceState, Remembered};
 use egui::{Key, Modifiers, Role, ThemePreference};
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -131,6 +132,39 @@ fn errors_stay_until_they_are_closed_however_many_there_are() {
         harness.run_steps(2);
     }
     assert!(harness.query_by_label_contains("broken-").is_none(), "a closed message is back");
+}
+
+#[test]
+fn what_passes_by_is_in_nobodys_way() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(&scene_file(folder.path()), SIZE);
+    wait_until(&mut harness, |app| app.picture_on_show().is_some());
+    let before = harness.state().document.description.camera.clone();
+    harness.state_mut().toasts.say("something passes by");
+    harness.run_steps(2);
+    let message = harness.get_by_label("something passes by").rect();
+    drag(&mut harness, message.center(), egui::vec2(60.0, 0.0));
+    let after = &harness.state().document.description.camera;
+    assert_ne!(after.eye, before.eye, "the message holds the hand up");
+}
+
+#[test]
+fn a_newcomer_is_told_what_a_hand_can_do_for_long_enough_to_read_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, own) = (scene_file(folder.path()), folder.path().join("own"));
+    let is_there = || crate::window::settings::are_there(Some(&own));
+    assert!(!is_there(), "nobody was here");
+    let mut harness = window_with(&path, SIZE, Some(own.clone()));
+    harness.state_mut().greet();
+    let tells =
+        |harness: &Harness<'_, App>| harness.query_by_label_contains("Drag to orbit").is_some();
+    // A quarter of a second each.
+    harness.run_steps(60);
+    assert!(tells(&harness), "it is gone after 15 s");
+    harness.run_steps(60);
+    assert!(!tells(&harness), "it stays");
+    harness.state_mut().keep_settings();
+    wait_until(&mut harness, |_| is_there());
 }
 
 /// The kept pictures.

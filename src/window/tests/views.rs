@@ -196,6 +196,8 @@ fn a_click_shows_the_object_and_its_material_in_the_panel() {
         wait_until(&mut harness, |app| app.awaited_click.is_none());
         let chosen = &harness.state().interface.selection;
         assert_eq!((chosen.object, chosen.material, chosen.texture), (object, object, object));
+        let told = harness.query_by_label_contains("shown in the panel");
+        assert!(told.is_none(), "what the panel shows is said as well");
     }
     assert_eq!(harness.state().document.description, before, "a click is an edit");
 }

@@ -138,6 +138,7 @@ fn a_drag_over_the_picture_turns_the_camera_and_is_one_step_of_undo() {
     harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
     harness.run_steps(3);
     assert_eq!(harness.state().document.description, before, "not one step of undo");
+    harness.get_by_label("undone: camera move");
 }
 
 #[test]
@@ -229,7 +230,7 @@ fn unsaved_edits_survive_a_crash() {
     };
     let mut harness = window_with(&path, [1024.0, 700.0], Some(own));
     assert_ne!(harness.state().document.description, edited, "the file was saved");
-    harness.get_by_role_and_label(Role::Button, "Restore it").click();
+    harness.get_by_role_and_label(Role::Button, "Restore").click();
     wait_until(&mut harness, |app| app.files.title == "restored");
     let restored = &harness.state().document.description;
     assert_eq!(*restored, edited, "the edits were lost");

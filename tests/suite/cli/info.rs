@@ -152,3 +152,17 @@ fn words_and_json_say_the_same_of_scenes_meshes_and_snapshots() {
     let words = place.ok(&["info", "m.obj"]).stdout;
     assert!(words.contains("vertices     5\ntriangles    3\n"), "{words}");
 }
+
+/// Such a mesh can be looked at; a scene or a snapshot saved of it would not find it again.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_mesh_whose_name_no_scene_can_hold_is_told() {
+    use std::os::unix::ffi::OsStrExt;
+    let place = Place::with_mesh();
+    let name = std::ffi::OsStr::from_bytes(b"m\xff.obj");
+    std::fs::rename(place.path("m.obj"), place.path("").join(name)).unwrap();
+    let run = super::Run::of(place.command().arg("info").arg(name));
+    let expected = "warning: m\u{fffd}.obj: its name is no UTF-8, so that no saved scene or snapshot can find \
+         it; give it another name first\n";
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), expected), "{}", run.stdout);
+}

@@ -10,13 +10,13 @@ fn a_system_without_threads_or_memory_is_told_with_what_would_help() {
     let limited = |kibibytes, options: &str| {
         run_within(&place, kibibytes, &format!("render ball.toml -o a.png {options}"))
     };
-    // Where the threads before took all there is, not even the message may find room.
-    let is_told = |run: &Run| {
-        let says = run.stderr.contains("1024 threads") && run.stderr.contains("smaller number");
-        run.status == Some(1) && says
-    };
-    let runs: Vec<Run> = (0..5).map(|_| limited(1 << 20, "-t 1024")).collect();
-    assert!(runs.iter().any(is_told), "{:?}", runs.last().map(|run| &run.stderr));
+    let run = limited(1 << 20, "-t 1024");
+    let needs = "error: starting 1024 threads takes 66.1 GiB of memory, and ";
+    let is_told = run.stderr.starts_with(needs) && run.stderr.contains("give a smaller number");
+    assert!(run.status == Some(1) && is_told, "{:?}: {}", run.status, run.stderr);
+    let run = limited(1 << 20, "-t 12");
+    assert_eq!(run.status, Some(0), "12 threads: {}", run.stderr);
+    std::fs::remove_file(place.path("a.png")).unwrap();
     let run = limited(1 << 20, "--width 4000 --height 3000");
     let needs = "error: a picture of 4000 x 3000 pixels takes 1.6 GiB of memory, and ";
     let is_told = run.stderr.starts_with(needs) && run.stderr.contains("MiB are free");
@@ -29,6 +29,40 @@ fn a_system_without_threads_or_memory_is_told_with_what_would_help() {
     let says = "error: penumbra itself takes 16 MiB of memory, and ";
     let is_told = |run: &Run| run.status == Some(1) && run.stderr.starts_with(says);
     assert!(runs.iter().any(is_told), "{:?}", runs.last().map(|run| &run.stderr));
+}
+
+/// Just enough for the program, or for a thread, or for the picture: each limit has its picture or its
+/// sentence, and never the system's own words.
+#[test]
+fn a_limit_that_is_only_just_too_low_is_told_too() {
+    let place = Place::with_ball();
+    for kibibytes in (60 << 10..240 << 10).step_by(5003) {
+        let run = run_within(&place, kibibytes, "render ball.toml -o a.png");
+        let is_told = run.status == Some(1) && run.stderr.starts_with("error: ");
+        let is_whole = run.status == Some(0) && run.stderr.is_empty();
+        assert!(is_told || is_whole, "{kibibytes} KiB: {:?}: {}", run.status, run.stderr);
+    }
+}
+
+/// Beyond such a limit the system ends a program without a word; nothing is begun.
+#[test]
+fn a_picture_longer_than_a_file_may_be_is_refused_and_nothing_is_left() {
+    let place = Place::with_ball();
+    place.write("a.exr", b"as it was");
+    for before in ["", "trap '' XFSZ; "] {
+        let script = format!(
+            "{before}ulimit -f 1; exec \"$0\" render ball.toml -o a.exr --width 200 --height 200"
+        );
+        let mut command = std::process::Command::new("sh");
+        command.args(["-c", &script, env!("CARGO_BIN_EXE_penumbra")]).current_dir(place.path(""));
+        let run = Run::of(&mut command);
+        let start = "error: a.exr: cannot be written: takes ";
+        let is_told =
+            run.stderr.starts_with(start) && run.stderr.contains(" bytes, and a file may ");
+        assert!(run.status == Some(1) && is_told, "{:?}: {}", run.status, run.stderr);
+        assert_eq!(place.read("a.exr"), b"as it was", "the old file");
+        assert_eq!(super::failures::files_in(&place), ["a.exr", "ball.toml"], "what is left");
+    }
 }
 
 /// What a mesh will take is asked while it is read, and once more for each of its crease angles.

@@ -235,7 +235,7 @@ proptest! {
     #[test]
     fn trees_find_what_brute_force_finds_among_many_objects(
         seed in any::<u64>(),
-        n_objects in prop_oneof![1_u32..20, 45_u32..80],
+        n_objects in prop_oneof![10 => 1_u32..20, 10 => 45_u32..80, 1 => 300_u32..400],
         offset in prop_oneof![2 => Just(0.0_f64), 1 => Just(300.0), 1 => Just(1e5)],
     ) {
         let mut numbers = Numbers::new(seed);

@@ -64,3 +64,29 @@ fn solids_and_their_boxes_are_counted() {
     assert_eq!(cost(&[-3.0, 0.0, 3.0]), three, "the boxes of two are missed");
     assert_eq!(three.total(), 4, "in all");
 }
+
+/// A tree over objects spares rays most of them, boxes and all.
+#[test]
+fn rays_come_to_few_of_many_objects() {
+    let mut balls = Vec::new();
+    for i in 0..32_i32 {
+        for j in 0..32_i32 {
+            let center = DVec3::new(f64::from(i), f64::from(j), f64::from((7 * i + 13 * j) % 5));
+            balls.push(Instance::new(Shape::Sphere { center, radius: 0.45 }, Transform::IDENTITY));
+        }
+    }
+    let geometry = Geometry::new(balls, AcceleratorKind::WideBvh);
+    assert!(geometry.statistics().n_nodes > 64, "{:?}", geometry.statistics());
+    let (mut n_hits, mut n_nodes, mut n_primitives) = (0, 0, 0);
+    for i in 0..1000_u16 {
+        let (u, v) = (0.031 * f32::from(i), 0.017 * f32::from(i * 7 % 1800));
+        let ray = Ray::new(Vec3::new(u, v, 20.0), Vec3::new(0.01, -0.02, -1.0));
+        let (hit, cost) = geometry.intersect_counted(&ray);
+        n_hits += u32::from(hit.is_some());
+        n_nodes += cost.n_nodes;
+        n_primitives += cost.n_primitives;
+    }
+    assert!(n_hits > 500, "{n_hits} hits");
+    let (nodes, tests) = (f64::from(n_nodes) / 1000.0, f64::from(n_primitives) / 1000.0);
+    assert!(nodes < 50.0 && tests < 1.5, "{nodes} boxes and {tests} balls a ray");
+}
