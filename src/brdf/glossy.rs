@@ -67,3 +67,29 @@ impl Glossy {
         pdf
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::brdf::WardForm;
+
+    /// How the lobes share the samples moves no mean, only noise: by their luminances; from below only
+    /// the diffuse one is left.
+    #[test]
+    fn lobes_share_the_samples_by_luminance() {
+        let glossy = Glossy {
+            diffuse: Rgb::new(0.2, 0.4, 0.1),
+            specular: Rgb::new(0.5, 0.1, 0.6),
+            lobe: Ward { form: WardForm::Duer, alpha_x: 0.05, alpha_y: 0.05 },
+        };
+        let diffuse = 0.2126 * 0.2 + 0.7152 * 0.4 + 0.0722 * 0.1;
+        let specular = 0.2126 * 0.5 + 0.7152 * 0.1 + 0.0722 * 0.6;
+        let wo = Vec3::new(0.6, 0.0, 0.8);
+        // Far beside the lobe, so that the diffuse part alone is as dense.
+        let wi = Vec3::new(0.0, 0.8, 0.6);
+        for (wo, share) in [(wo, diffuse / (diffuse + specular)), (-wo, 1.0)] {
+            let (found, expected) = (glossy.pdf(wo, wi), share * 0.6 / std::f32::consts::PI);
+            assert!((found / expected - 1.0).abs() < 1e-5, "{found}, not {expected}");
+        }
+    }
+}

@@ -126,3 +126,38 @@ impl Ward {
         elementary::exp(-2.0 * self.slope_squared(half) / (1.0 + half.z))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Between a viewer along the normal and the sampled direction lies the half vector: its azimuth is
+    /// that of the ellipse of slopes, and a share v of all lie nearer to the normal.
+    #[test]
+    fn half_vectors_lie_where_their_distribution_says() {
+        for (alpha_x, alpha_y) in [(0.1, 0.1), (0.3, 0.05)] {
+            for (u, v) in [(0.0, 0.3), (0.25, 0.5), (0.1, 0.9), (0.7, 0.2), (0.45, 0.01)] {
+                let (sin, cos) = (2.0 * std::f64::consts::PI * f64::from(u)).sin_cos();
+                let along = [f64::from(alpha_x) * cos, f64::from(alpha_y) * sin];
+                let length = along[0].hypot(along[1]);
+                // k cos² + k sin² of the azimuth: 1 over the squared length of the ellipse there.
+                let k = 1.0 / (length * length);
+                let drop = -(1.0 - f64::from(v)).ln();
+                for (form, expected) in [
+                    (WardForm::Bounded, 1.0 - 1.0 / (1.0 + drop / k).sqrt()),
+                    (WardForm::Original, drop / (2.0 * k)),
+                    (WardForm::Duer, drop / (2.0 * k)),
+                ] {
+                    let lobe = Ward { form, alpha_x, alpha_y };
+                    let wi = lobe.sample(Vec3::Z, [u, v]).unwrap();
+                    let half = (wi + Vec3::Z).as_dvec3().normalize();
+                    let what = format!("{form:?} {alpha_x} {alpha_y} at {u} {v}");
+                    let found = 1.0 - half.z;
+                    assert!((found - expected).abs() < 2e-3 * expected + 1e-6, "{what}: {found}");
+                    let turn = (half.x * along[1] - half.y * along[0]).abs();
+                    assert!(turn < 1e-4 * length, "{what}: turned by {turn}");
+                }
+            }
+        }
+    }
+}

@@ -219,4 +219,40 @@ mod tests {
         let heavy = Octaves { count: 12, lacunarity: 2.0, gain: 1e300 };
         assert!(heavy.fbm(p).abs() <= 1.04, "{}", heavy.fbm(p));
     }
+
+    /// Octaves have nothing to do with each other, so their variances add up: of amplitudes 1, g, g², …
+    /// normalised by their sum. Each has as many cells as lacunarity says: a sum of one term at a time,
+    /// taken out by a gain without end, is the noise at that frequency.
+    #[test]
+    fn gain_and_lacunarity_are_ratios_of_amplitude_and_frequency() {
+        let points = || {
+            (0..40_000_i32).map(|i| {
+                DVec3::new(f64::from(i) * 0.754_877, f64::from(i) * 0.569_840, f64::from(i) * 0.381)
+            })
+        };
+        let moments = |octaves: Octaves| {
+            let [sum, squares] = points().fold([0.0, 0.0], |[sum, squares], p| {
+                let value = octaves.fbm(p);
+                [sum + value, squares + value * value]
+            });
+            [sum, squares].map(|x| x / 40_000.0)
+        };
+        let [_, one] = moments(Octaves { count: 1, lacunarity: 2.0, gain: 0.5 });
+        assert!((one / 0.0730 - 1.0).abs() < 0.02, "variance of the noise itself: {one}");
+        for (count, gain) in [(2_u32, 0.5_f64), (2, 1.0), (4, 0.5), (4, 0.8)] {
+            let [mean, variance] = moments(Octaves { count, lacunarity: 2.1, gain });
+            let amplitudes = (0..count).map(|k| gain.powi(k as i32));
+            let squares: f64 = amplitudes.clone().map(|a| a * a).sum();
+            let expected = one * squares / amplitudes.sum::<f64>().powi(2);
+            assert!((variance / expected - 1.0).abs() < 0.03, "{variance}, not {expected}");
+            assert!(mean.abs() < 0.01, "mean {mean} of {count} by {gain}");
+        }
+        // All of the weight in the last term.
+        let last = Octaves { count: 3, lacunarity: 1.7, gain: 1e12 };
+        let shift = 2.0 * DVec3::new(19.19, 47.43, 73.71);
+        for p in points().take(50) {
+            let (found, expected) = (last.fbm(p), perlin(p * (1.7 * 1.7) + shift));
+            assert!((found - expected).abs() < 1e-9, "{found}, not {expected} at {p}");
+        }
+    }
 }

@@ -246,6 +246,10 @@ mod tests {
         let noise = model.noise(&pixels, Course::even(0.5)).unwrap();
         let mean = 0.5 * (3.0 + 4.0);
         assert_near(noise.percent, 100.0 * (8.0_f64 / 3.0).sqrt() / mean, "figure");
+        // A variance of two degrees of freedom is off by half of its square, in squares.
+        let squares = 0.5 * (expected[0].powi(2) + expected[1].powi(2));
+        let sum = expected[0] + expected[1];
+        assert_near(noise.uncertainty, 0.5 * squares.sqrt() / sum, "its standard error");
     }
 
     /// A quarter of all differences to come: of the halves and the quarters of the samples.
@@ -271,6 +275,27 @@ mod tests {
             let expected = 0.25 * difference * (tail + tail.powi(2) / (1.0 - tail));
             assert_near(model.variance(&pixels[0]), expected, "variance of the mean");
         }
+    }
+
+    /// Between four and eight samples halves and quarters are all there is. The figure doubts itself by
+    /// five degrees of freedom a pixel and 8 % for the model.
+    #[test]
+    fn few_sobol_points_are_judged_by_halves_and_quarters() {
+        let pixels = pixels(&[&[1.0, 2.0, 4.0, 5.5], &[3.0, 1.0, 2.0, 0.5]]);
+        let model = ErrorModel::new(Sampler::Sobol { seed: 0 }, &pixels);
+        let variances = [(3.25_f64.powi(2), 1.625), (0.75_f64.powi(2), 3.125)].map(
+            |(halves, quarters): (f64, f64)| {
+                let difference = (halves + 2.0 * model.tail * quarters) / 3.0;
+                0.25 * difference * model.tail / (1.0 - model.tail)
+            },
+        );
+        for (pixel, expected) in pixels.iter().zip(variances) {
+            assert_near(model.variance(pixel), expected, "variance of the mean");
+        }
+        let noise = model.noise(&pixels, Course::even(0.5)).unwrap();
+        let squares = 2.0 / 7.0 * (variances[0].powi(2) + variances[1].powi(2));
+        let by_chance = 0.5 * squares.sqrt() / (variances[0] + variances[1]);
+        assert_near(noise.uncertainty, by_chance.hypot(0.08), "standard error");
     }
 
     /// The figure is a root: half of it is a quarter of the squared error.

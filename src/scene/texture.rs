@@ -326,4 +326,19 @@ mod tests {
             assert!((found - expected).length() < 1e-6, "{found} at {value}");
         }
     }
+
+    /// 1e-4 of a cell further along each axis: a point that is less than that below a border counts to
+    /// the cell above.
+    #[test]
+    fn checkers_are_looked_up_a_little_further() {
+        let scale = 2.5;
+        for (below, expected) in [(0.99e-4, Rgb::ONE), (1.01e-4, Rgb::ZERO)] {
+            for axis in DVec3::AXES {
+                let middle = DVec3::splat(0.5) - 0.5 * axis;
+                let p = (middle + axis * (1.0 - below)) / scale;
+                let found = checker(scale, &[Rgb::ZERO, Rgb::ONE], p);
+                assert_eq!(found, expected, "{below} below a border along {axis}");
+            }
+        }
+    }
 }

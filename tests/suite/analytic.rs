@@ -9,3 +9,4 @@ mod gloss;
 mod lens;
 mod lights;
 mod surfaces;
+mod tangents;

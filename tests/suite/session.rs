@@ -15,14 +15,21 @@ use penumbra::render::{RenderJob, RenderSettings};
 use penumbra::scene::{Assets, resolve};
 use penumbra::session::{Frame, Goal, Phase, Session, Status};
 
-use script::{Call, Script};
+use script::{Call, Question, Script};
 
+mod maps;
 mod real;
+mod rest;
 mod rules;
 mod script;
 
 /// Longer than anything here takes.
 const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Small enough that its first full-size sample is its preview.
+const SMALL: u32 = 8;
+/// Large enough that its first preview is a smaller picture.
+const LARGE: u32 = 300;
 
 /// A job of this many pixels a side, known by its seed.
 fn job(seed: u32, side: u32) -> RenderJob {
@@ -45,6 +52,14 @@ fn seed_of(job: &RenderJob) -> u32 {
 
 fn goal(samples: u32) -> Goal {
     Goal { samples, seconds: None, noise_percent: None }
+}
+
+fn full_passes(calls: &[Call]) -> Vec<(u32, u32)> {
+    let pass = |call: &Call| match call.question {
+        Question::Pass { before, n_samples } => Some((before, n_samples)),
+        Question::Prepare | Question::Preview | Question::Features { .. } | Question::Costs => None,
+    };
+    calls.iter().filter_map(pass).collect()
 }
 
 /// A session with a scripted renderer, and everything it has shown.

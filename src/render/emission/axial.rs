@@ -187,3 +187,40 @@ impl Axial {
         of_object * DVec3::from_array(pulled).length() / (self.volume_factor * total)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How far around the side is sampled moves no mean, only noise: up to the lines that are seen edge
+    /// on, no further, and half of the apparent width lies between the lines of a quarter and three.
+    #[test]
+    fn the_side_is_sampled_up_to_its_rim() {
+        for radii in [[0.5, 0.5], [0.7, 0.0], [0.7, 0.2]] {
+            let axial = Axial::new(DVec3::ZERO, 1.5 * DVec3::Z, radii, Transform::IDENTITY);
+            for seen in
+                [DVec3::new(2.0, 0.3, 0.5), DVec3::new(-0.4, 0.9, 1.9), DVec3::new(1.6, -0.9, -1.0)]
+            {
+                let above = |u: f32| {
+                    let (place, normal) = axial.on_side(seen, [u, 0.4]);
+                    normal.normalize().dot((seen - place).normalize())
+                };
+                for rim in [0.0, 1.0 - f32::EPSILON] {
+                    assert!(above(rim).abs() < 2e-3, "{} at the rim from {seen}", above(rim));
+                }
+                assert!(above(0.5) > 0.05, "the test can fail: {} from {seen}", above(0.5));
+                // The width from the nearest line to that at an angle, as a sum of narrow strips.
+                let facing = axial.facing(seen);
+                let strips = |angle: f64| {
+                    let n = 10_000;
+                    let at =
+                        |i: i32| axial.width_at(seen, angle * (f64::from(i) + 0.5) / f64::from(n));
+                    (0..n).map(at).sum::<f64>() * angle / f64::from(n)
+                };
+                let half = axial.angle_of(seen, 0.5);
+                let share = strips(half) / strips(facing);
+                assert!((share - 0.5).abs() < 1e-4, "{share} of the width from {seen}");
+            }
+        }
+    }
+}

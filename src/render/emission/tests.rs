@@ -225,6 +225,53 @@ fn the_choice_among_emitters_belongs_to_the_density() {
     assert_distributed(&scene, Vec3::new(0.0, -1.5, -0.5), up, "balls, a sheet and a sky");
 }
 
+/// What one of them is chosen by moves no mean, only noise: area times luminance over 4 and the squared
+/// distance, times the best cosine of the ball around its bounds, at most that of a sky of its peak; of a
+/// sky, half of what is above its mean.
+#[test]
+fn emitters_are_chosen_by_about_their_irradiance() {
+    let ball = Shape::Sphere { center: DVec3::ZERO, radius: 0.8 };
+    let block = Shape::Box { min: DVec3::new(-1.0, -0.5, -0.25), max: DVec3::new(1.0, 0.5, 0.25) };
+    let tube = Shape::Cylinder { base: DVec3::NEG_Y, top: DVec3::Y, radius: 0.5 };
+    let stretched =
+        Transform::new(DVec3::ZERO, DVec3::new(0.0, 90.0, 0.0), DVec3::new(2.0, 2.0, 2.0));
+    let pi = std::f64::consts::PI;
+    for (shape, area, half) in [
+        (ball, 4.0 * pi * 0.64, DVec3::splat(0.8)),
+        (block, 2.0 * (2.0 + 0.5 + 1.0), DVec3::new(1.0, 0.5, 0.25)),
+        (tube, pi * (2.0 + 0.5), DVec3::new(0.5, 1.0, 0.5)),
+    ] {
+        for (transform, scale) in [(Transform::IDENTITY, 1.0), (stretched, 2.0)] {
+            let scene =
+                scene(vec![(shape.clone(), transform)], Background::Color(Rgb::ZERO), Vec::new());
+            let emission = Emission::new(&scene);
+            let reach = 1.001 * scale * half.length();
+            // Facing it, at right angles to it, and from just outside.
+            for (distance, normal, cos) in [
+                (9.0, Vec3::NEG_Y, 1.0),
+                (9.0, Vec3::X, reach / 9.0),
+                (1.02 * scale * half.y, Vec3::NEG_Y, 1.0),
+            ] {
+                let from = Vec3::Y * distance as f32;
+                let found = emission.weigh(from, normal, u32::MAX, &mut Vec::new());
+                // The brightest of its materials glows with 3.
+                let irradiance = 3.0 * 0.25 * area * scale * scale / (distance * distance);
+                let expected = cos * irradiance.min(3.0 * pi);
+                let what = format!("{shape:?}, {scale}, {distance} away");
+                assert!(
+                    (f64::from(found) / expected - 1.0).abs() < 1e-4,
+                    "{found}, not {expected}: {what}"
+                );
+            }
+        }
+    }
+    // A checker of two colours by octants: half of the sky is 1 above the mean of 1.
+    let checker = Texture::Checker { scale: 1.0, colors: [Rgb::ZERO, Rgb::splat(2.0)] };
+    let scene = scene(Vec::new(), Background::Texture(0), vec![checker]);
+    let found = Emission::new(&scene).weigh(Vec3::ZERO, Vec3::Y, u32::MAX, &mut Vec::new());
+    assert!((f64::from(found) / pi - 1.0).abs() < 1e-3, "{found}: half of 2 pi");
+}
+
 /// From within a solid only scattered rays find it; a uniform sky is never looked for.
 #[test]
 fn what_scattered_rays_find_as_well_is_left_to_them() {

@@ -3,10 +3,11 @@
 use glam::Vec3;
 
 use super::{Path, ROULETTE_DEPTH, Scattered, TileRenderer, dimension};
-use crate::brdf::fresnel;
+use crate::brdf::{Glossy, fresnel};
 use crate::color::{Rgb, luminance};
 use crate::math::Ray;
 use crate::render::shading::Shading;
+use crate::scene::Material;
 use crate::scene::description::IntegratorKind;
 
 impl TileRenderer<'_> {
@@ -14,12 +15,7 @@ impl TileRenderer<'_> {
     pub(super) fn go_on(&mut self, path: Path, shading: &Shading<'_>) {
         let material = shading.material;
         let scatters = self.world.job.settings.integrator == IntegratorKind::Path;
-        let glossy = luminance(shading.glossy.diffuse) + luminance(shading.glossy.specular);
-        let weights = [
-            luminance(material.reflection),
-            luminance(material.transmission),
-            if scatters { glossy } else { 0.0 },
-        ];
+        let weights = ways(material, &shading.glossy, scatters);
         let total: f32 = weights.iter().sum();
         if total <= 0.0 {
             return;
@@ -89,5 +85,46 @@ impl TileRenderer<'_> {
         let pdf = shading.glossy.pdf(wo, wi);
         let is_valid = shading.normal.dot(direction) > 0.0 && pdf > 0.0;
         is_valid.then(|| (direction, shading.glossy.eval(wo, wi) * (wi.z / pdf), pdf))
+    }
+}
+
+/// How much is mirrored, goes through glass, is scattered: what one of them is chosen by.
+fn ways(material: &Material, glossy: &Glossy, scatters: bool) -> [f32; 3] {
+    let scattered = luminance(glossy.diffuse) + luminance(glossy.specular);
+    [
+        luminance(material.reflection),
+        luminance(material.transmission),
+        if scatters { scattered } else { 0.0 },
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::brdf::{Ward, WardForm};
+    use crate::scene::material::ColorSource;
+
+    /// The choice moves no mean, only noise: it is by luminance.
+    #[test]
+    fn ways_are_chosen_by_luminance() {
+        let lobe = Ward { form: WardForm::Bounded, alpha_x: 0.1, alpha_y: 0.1 };
+        let glossy = Glossy { diffuse: Rgb::X, specular: Rgb::new(0.0, 0.5, 0.0), lobe };
+        let material = Material {
+            diffuse: ColorSource::constant(Rgb::ONE),
+            specular: Rgb::ONE,
+            lobe,
+            tangent: Vec3::X,
+            reflection: Rgb::new(0.0, 0.0, 0.5),
+            transmission: Rgb::new(0.0, 0.5, 1.0),
+            ior: 1.5,
+            emission: Rgb::ZERO,
+            bump: None,
+        };
+        for (scatters, scattered) in [(true, 0.2126 + 0.3576), (false, 0.0)] {
+            let found = ways(&material, &glossy, scatters);
+            for (found, expected) in found.into_iter().zip([0.0361, 0.3576 + 0.0722, scattered]) {
+                assert!((found - expected).abs() < 1e-6, "{found}, not {expected}");
+            }
+        }
     }
 }

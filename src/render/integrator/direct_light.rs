@@ -3,11 +3,11 @@
 use glam::Vec3;
 
 use super::{Path, TileRenderer, dimension, power};
-use crate::brdf::Ward;
+use crate::brdf::{Glossy, Ward};
 use crate::color::{Rgb, luminance};
 use crate::math::Ray;
 use crate::render::shading::Shading;
-use crate::scene::light::{Light, LightSample};
+use crate::scene::light::{Light, LightEstimate, LightSample};
 
 /// Shadow rays to `[[lights]]` at a surface, at most, where the lobe is not sampled as well.
 pub(super) const LIGHTS_AT_ONCE: usize = 8;
@@ -181,21 +181,26 @@ impl TileRenderer<'_> {
 /// About what a light brings to the eye by way of a surface; 0 only where that is nothing.
 fn weight(light: &Light, shading: &Shading<'_>, wo: Vec3) -> f32 {
     let Some(estimate) = light.estimate(shading.surface.point) else { return 0.0 };
+    let wi = shading.frame.local_from_world(estimate.direction);
+    reflected(&estimate, &shading.glossy, wo, wi)
+}
+
+/// About what goes to `wo` of a light around `wi`, in the shading frame.
+fn reflected(light: &LightEstimate, glossy: &Glossy, wo: Vec3, wi: Vec3) -> f32 {
     // The best cosine of any part of it.
-    let cos = (shading.frame.z.dot(estimate.direction) + estimate.half_width).clamp(0.0, 1.0);
-    let specular = luminance(shading.glossy.specular);
-    let mut value = (luminance(shading.glossy.diffuse) + 0.01 * specular) / std::f32::consts::PI;
+    let cos = (wi.z + light.half_width).clamp(0.0, 1.0);
+    let specular = luminance(glossy.specular);
+    let mut value = (luminance(glossy.diffuse) + 0.01 * specular) / std::f32::consts::PI;
     if specular > 0.0 && wo.z > 0.0 && cos > 0.0 {
         // The lobe as wide as half the angle of the light makes it.
-        let lobe = shading.glossy.lobe;
+        let lobe = glossy.lobe;
         let widened =
-            |alpha: f32| (alpha * alpha + 0.25 * estimate.half_width * estimate.half_width).sqrt();
+            |alpha: f32| (alpha * alpha + 0.25 * light.half_width * light.half_width).sqrt();
         let (alpha_x, alpha_y) = (widened(lobe.alpha_x), widened(lobe.alpha_y));
         let wide = Ward { alpha_x, alpha_y, ..lobe };
-        let wi = shading.frame.local_from_world(estimate.direction);
         value += specular * wide.eval(wo, Vec3::new(wi.x, wi.y, wi.z.max(cos)).normalize());
     }
-    let weight = estimate.irradiance * cos * value;
+    let weight = light.irradiance * cos * value;
     // Beside a light the estimate has no bound.
     const MOST: f32 = 1e30;
     if weight < MOST { weight } else { MOST }
@@ -204,6 +209,59 @@ fn weight(light: &Light, shading: &Shading<'_>, wo: Vec3) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::brdf::WardForm;
+
+    /// The balance of both ways is by the squares of their densities, whatever these are.
+    #[test]
+    fn the_power_heuristic_is_that_of_squares() {
+        for (this, other, expected) in
+            [(1.0, 2.0, 0.2), (3.0, 4.0, 0.36), (4e-30, 3e-30, 0.64), (1e30, 1e30, 0.5)]
+        {
+            let found = power(this, other);
+            assert!((found - expected).abs() < 1e-6, "{found} of {this} and {other}");
+            assert!((power(other, this) + found - 1.0).abs() < 1e-6, "{this} and {other}");
+        }
+        assert_eq!([power(f32::INFINITY, 2.0), power(0.0, 2.0), power(2.0, 0.0)], [1.0, 0.0, 1.0]);
+    }
+
+    /// What lights are chosen by moves no mean, only noise: held against its own formula, in double
+    /// precision. Irradiance, times the best cosine of the light, times the diffuse part, a trace of
+    /// the gloss, and the lobe that half the angle of the light has widened.
+    #[test]
+    fn lights_are_chosen_by_what_goes_to_the_eye() {
+        let lobe = Ward { form: WardForm::Bounded, alpha_x: 0.2, alpha_y: 0.3 };
+        let wo = Vec3::new(-0.36, -0.48, 0.8);
+        for (wi, half_width) in [
+            (Vec3::new(0.48, 0.36, 0.8), 0.1_f32),
+            (Vec3::new(0.48, 0.36, 0.8), 0.0),
+            (Vec3::new(0.6, 0.64, 0.48), 0.4),
+            // Beside the lobe, where the diffuse part and the trace are all there is.
+            (Vec3::new(-0.96, -0.28, 0.0), 0.1),
+        ] {
+            for (diffuse, specular) in [(0.5, 0.0), (0.004, 0.4), (0.1, 0.2)] {
+                let [diffuse, specular] = [diffuse, specular].map(Rgb::splat);
+                let glossy = Glossy { diffuse, specular, lobe };
+                let light = LightEstimate { direction: wi, half_width, irradiance: 7.0 };
+                let found = f64::from(reflected(&light, &glossy, wo, wi));
+                let width = f64::from(half_width);
+                let cos = (f64::from(wi.z) + width).min(1.0);
+                let [x, y] = [0.2_f64, 0.3].map(|alpha| alpha * alpha + 0.25 * width * width);
+                let raised = Vec3::new(wi.x, wi.y, cos as f32).as_dvec3().normalize();
+                let h = wo.as_dvec3() + raised;
+                let gloss = (-(h.x * h.x / x + h.y * h.y / y) / (h.z * h.z)).exp() * h.dot(h)
+                    / (std::f64::consts::PI * (x * y).sqrt() * h.z.powi(4));
+                let [d, s] = [diffuse.x, specular.x].map(f64::from);
+                let expected = 7.0 * cos * ((d + 0.01 * s) / std::f64::consts::PI + s * gloss);
+                let what = format!("{wi}, {half_width} wide, {d} and {s}");
+                assert!((found / expected - 1.0).abs() < 1e-4, "{found}, not {expected}: {what}");
+            }
+        }
+        let below = LightEstimate { direction: -Vec3::Z, half_width: 0.5, irradiance: 7.0 };
+        let glossy = Glossy { diffuse: Rgb::ONE, specular: Rgb::ONE, lobe };
+        assert_eq!(reflected(&below, &glossy, wo, -Vec3::Z), 0.0, "from below");
+        let near = LightEstimate { direction: wo, half_width: 0.5, irradiance: f32::INFINITY };
+        assert_eq!(reflected(&near, &glossy, wo, wo), 1e30, "beside a light");
+    }
 
     /// Sums of these are rounded so that the limit would go up and down for ever.
     #[test]

@@ -138,3 +138,56 @@ vectorized! {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::sampler::Sampler;
+    use crate::math::vectorized::at_every_level;
+
+    /// The margins at both ends are those of the lane's own point and light, of whatever size its
+    /// neighbours are: a margin of a neighbour would let a small thing shade itself, or not.
+    #[test]
+    fn a_block_of_shadow_rays_has_the_rays_of_its_points() {
+        let (mut block, mut samples) = (ShadingBlock::EMPTY, LightBlock::EMPTY);
+        for i in 0..BLOCK {
+            let numbers = Sampler::Random { seed: 5 }.numbers(i as u32, 0, 0);
+            let some = |k: u32| {
+                let ([x, y], [z, _]) = (numbers.pair(2 * k), numbers.pair(2 * k + 1));
+                Vec3::new(x, y, z) - 0.5
+            };
+            let size = 10.0_f32.powi(i as i32 * 5 % 11 - 5);
+            set_vec3(&mut block.surface.point, i, some(0) * size);
+            set_vec3(&mut block.surface.normal, i, some(1).normalize());
+            block.surface.clearance[i] = 1e-6 * size;
+            let reach = some(2) * size;
+            set_vec3(&mut samples.reach, i, reach);
+            set_vec3(&mut samples.direction, i, reach.normalize());
+            set_vec3(&mut samples.normal, i, some(3).normalize());
+        }
+        for t_max in [1.0, f32::INFINITY] {
+            samples.t_max = t_max;
+            for (level, rays) in at_every_level(|| {
+                let mut rays = RayBlock::IDLE;
+                shadow_rays(&block, &samples, &mut rays);
+                rays
+            }) {
+                for i in 0..BLOCK {
+                    let (point, normal) =
+                        (vec3(&block.surface.point, i), vec3(&block.surface.normal, i));
+                    let clearance = block.surface.clearance[i];
+                    let towards = vec3(&samples.direction, i);
+                    let origin = Surface::left(point, normal, clearance, towards);
+                    let reach = vec3(&samples.reach, i);
+                    let (direction, end) = if t_max == f32::INFINITY {
+                        (reach, t_max)
+                    } else {
+                        clear_of(point, origin, reach, vec3(&samples.normal, i))
+                    };
+                    let found = (vec3(&rays.origin, i), vec3(&rays.direction, i), rays.t_max[i]);
+                    assert_eq!(found, (origin, direction, end), "{level:?}, lane {i}");
+                }
+            }
+        }
+    }
+}

@@ -8,7 +8,7 @@ use penumbra::geometry::mesh::Mesh;
 use penumbra::scene::image::Image;
 
 use crate::common::{
-    Files, Look, WHITE_FLOOR, assert_close, film, job, job_with, lambert_polygon, mean,
+    Files, Look, MakeMesh, WHITE_FLOOR, assert_close, film, job, job_with, lambert_polygon, mean,
 };
 
 const ONE_EVENT: &str = "integrator = 'path'\nmax_depth = 1";
@@ -22,8 +22,23 @@ fn sheet() -> Mesh {
     Mesh { positions, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() }
 }
 
+/// The same in a thousand slivers, 500 times as long as they are wide.
+fn slivers() -> Mesh {
+    let mut mesh = Mesh::default();
+    for i in 0..500_u16 {
+        let [left, right] = [i, i + 1].map(|k| f32::from(k) / 250.0 - 1.0);
+        let first = mesh.positions.len() as u32;
+        let corner = |x, z| glam::Vec3::new(x, 0.0, z);
+        mesh.positions.extend([corner(left, -0.5), corner(right, -0.5)]);
+        mesh.positions.extend([corner(right, 0.5), corner(left, 0.5)]);
+        mesh.triangles.extend([[0, 1, 2], [0, 2, 3]].map(|t: [u32; 3]| t.map(|k| first + k)));
+    }
+    mesh
+}
+
 fn radiance(look: &Look, body: &str) -> DVec3 {
-    let files = Files { meshes: vec![("sheet", sheet)], ..Files::default() };
+    let meshes: Vec<(_, MakeMesh)> = vec![("sheet", sheet), ("slivers", slivers)];
+    let files = Files { meshes, ..Files::default() };
     mean(&film(&job_with(&look.text(body), files, AcceleratorKind::WideBvh), look.samples))
 }
 
@@ -71,21 +86,33 @@ fn a_glowing_box_lights_by_the_faces_it_shows() {
     }
 }
 
-/// A mesh glows on both sides, however it is placed.
+/// A mesh glows on both sides, however it is placed and cut.
 #[test]
 fn a_glowing_sheet_lights_on_both_sides() {
     let look = Look::at(ASIDE, [0.0; 3]).with(ONE_EVENT).samples(1024);
-    for (turn, y) in [(0.0, 1.0), (180.0, 1.0), (0.0, 6.0), (180.0, 0.3)] {
+    for (turn, y, file) in [
+        (0.0, 1.0, "sheet"),
+        (180.0, 1.0, "sheet"),
+        (0.0, 6.0, "sheet"),
+        (180.0, 0.3, "sheet"),
+        (0.0, 1.0, "slivers"),
+        (180.0, 0.3, "slivers"),
+    ] {
         let half = DVec3::new(0.8, 0.0, 1.5);
         let corner = |sx: f64, sz: f64| DVec3::new(0.4 + half.x * sx, y, half.z * sz);
         let corners = [corner(-1., -1.), corner(1., -1.), corner(1., 1.), corner(-1., 1.)];
         let expected = lambert_polygon(DVec3::ZERO, DVec3::Y, &corners);
         let body = format!(
-            "{WHITE_FLOOR}{GLOW}[[objects]]\ntype = 'mesh'\nfile = 'sheet'\nmaterial = 'glow'\n\
+            "{WHITE_FLOOR}{GLOW}[[objects]]\ntype = 'mesh'\nfile = '{file}'\nmaterial = 'glow'\n\
              scale = [0.8, 1, 3]\nrotate = [{turn}, 0, 0]\ntranslate = [0.4, {y}, 0]\n"
         );
         let found = radiance(&look, &body).x * PI;
-        assert_close(found, 3.0 * expected, 6e-3, &format!("turned by {turn} at height {y}"));
+        assert_close(
+            found,
+            3.0 * expected,
+            6e-3,
+            &format!("{file} turned by {turn} at height {y}"),
+        );
         let none = radiance(&look.clone().with("integrator = 'path'\nmax_depth = 0"), &body);
         assert_eq!(none, DVec3::ZERO, "it takes an event");
     }

@@ -169,3 +169,36 @@ fn path_brings_light_through_glass_by_scattered_rays() {
     let direct = look("").radiance(&body(pane, false)).x;
     assert_close(direct, 0.8 * expected, 3e-3, "direct tints shadow rays");
 }
+
+/// A small visible lamp stands where Snell puts it, behind a thick pane: seen through two surfaces, each
+/// tinting and letting through its share; where a straight line would find it there is nothing.
+#[test]
+fn a_lamp_behind_a_pane_is_seen_where_it_is_bent_to() {
+    let (ior, angle) = (1.5, 50.0_f64.to_radians());
+    let inside = (angle.sin() / ior).asin();
+    let way = DVec3::new(angle.sin(), -angle.cos(), 0.0);
+    let (eye, entry) = (DVec3::Y - 2.0 * way, DVec3::Y);
+    let exit = DVec3::new(inside.tan(), 0.0, 0.0);
+    let straight = entry + way / angle.cos();
+    let seen = |from: DVec3, render| {
+        let lamp = from + 3.0 * way;
+        let body = format!(
+            "[[materials]]\nname = 'glass'\ntransmission = [0.9, 0.8, 0.7]\nior = {ior}\n\
+             [[objects]]\ntype = 'box'\nmin = [-50, 0, -50]\nmax = [50, 1, 50]\n\
+             material = 'glass'\n[[lights]]\ntype = 'sphere'\nposition = {:?}\nsize = 0.2\n\
+             power = [2, 2, 2]\n",
+            lamp.to_array()
+        );
+        Look::at(eye.to_array(), entry.to_array()).with(render).samples(4096).radiance(&body)
+    };
+    let through = 1.0 - fresnel(angle.cos(), ior);
+    let lamp = 2.0 / (4.0 * PI * PI * 0.01);
+    for render in ["", "integrator = 'path'"] {
+        let found = seen(exit, render);
+        for (channel, tint) in [0.9_f64, 0.8, 0.7].into_iter().enumerate() {
+            let expected = lamp * tint * tint * through * through;
+            assert_close(found[channel], expected, 5e-3, &format!("channel {channel}, {render}"));
+        }
+        assert_eq!(seen(straight, render), DVec3::ZERO, "{render}: not bent");
+    }
+}

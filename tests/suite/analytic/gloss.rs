@@ -234,3 +234,24 @@ fn anisotropy_follows_the_tangent() {
         assert_close(found, expected, 1e-3, &format!("tangent {tangent:?} turned by {turn}"));
     }
 }
+
+/// Under a white sky gloss shows the albedo of its form, more than 1 or not: by quadrature.
+#[test]
+fn gloss_under_a_white_sky_shows_its_albedo() {
+    for (form, name) in FORMS {
+        for alpha in [[0.1, 0.1], [0.3, 0.6]] {
+            for theta_deg in [30.0_f64, 70.0] {
+                let theta = theta_deg.to_radians();
+                let body = format!(
+                    "[environment]\nbackground = [1, 1, 1]\n{}",
+                    glossy_floor(name, alpha, [1.0, 0.0, 0.0], 0.0)
+                );
+                let eye = [theta.sin(), theta.cos(), 0.0];
+                let look = Look::at(eye, [0.0; 3]).samples(8192);
+                let found = look.with("integrator = 'path'\nmax_depth = 1").radiance(&body).x;
+                let expected = 0.1 + 0.6 * albedo(form, alpha[0], alpha[1], direction(theta, 0.0));
+                assert_close(found, expected, 4e-3, &format!("{name} {alpha:?} at {theta_deg}°"));
+            }
+        }
+    }
+}
