@@ -35,6 +35,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     // Before hours are spent on a picture that has no place to go.
     check_writable(output)?;
     let loaded = open(&arguments.file, &overrides(arguments))?;
+    spare(output, &arguments.file, &loaded)?;
     warn(&loaded.report, arguments.quiet);
     crash::rehearse();
     let samples = loaded.description.render.samples;
@@ -82,6 +83,19 @@ pub(super) fn open(file: &Path, overrides: &[Override]) -> Result<Loaded, Failur
         Err(LoadError::Override(error)) => Err(Failure::Usage(error.to_string())),
         Err(error) => Err(error.into()),
     }
+}
+
+/// Refuses an output that would take the place of what the picture is made of. A snapshot may: the new
+/// one carries the same scene.
+fn spare(output: &Path, scene: &Path, loaded: &Loaded) -> Result<(), Failure> {
+    let Ok(place) = output.canonicalize() else { return Ok(()) };
+    let scene = loaded.snapshot.is_none().then(|| scene.to_owned());
+    let read = loaded.files.iter().filter_map(|record| loaded.folder.disk_path(&record.file));
+    if scene.into_iter().chain(read).all(|path| path.canonicalize().ok() != Some(place.clone())) {
+        return Ok(());
+    }
+    let output = printable_path(output);
+    Err(anyhow!("--output {output}: the scene is read from there; give another name").into())
 }
 
 /// The scene with its trees built.

@@ -111,6 +111,30 @@ fn outputs_that_cannot_be_written_are_named_before_anything_is_read() {
     }
 }
 
+#[test]
+fn a_picture_takes_the_place_of_nothing_that_it_is_made_of() {
+    let place = Place::with_ball();
+    place.ok(&["render", "ball.toml", "-o", "wood.png", "-s", "1"]);
+    let wood = place.read("wood.png");
+    let texture = "[[textures]]\nname = 'wood'\ntype = 'image'\nfile = 'wood.png'\n";
+    place.write("textured.toml", format!("{BALL}{texture}").as_bytes());
+    for out in ["wood.png", "./wood.png"] {
+        let error = place.fails(1, &["render", "textured.toml", "-o", out]);
+        assert!(error.contains("wood.png") && error.contains("another name"), "{error}");
+    }
+    assert_eq!(place.read("wood.png"), wood, "the texture");
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(place.path("ball.toml"), place.path("link.png")).unwrap();
+        let error = place.fails(1, &["render", "ball.toml", "-o", "link.png"]);
+        assert!(error.contains("link.png"), "{error}");
+        assert_eq!(place.read("ball.toml"), BALL.as_bytes(), "the scene");
+    }
+    // A snapshot carries the same scene on.
+    place.ok(&["render", "wood.png", "-o", "wood.png", "-s", "2"]);
+    assert_ne!(place.read("wood.png"), wood, "more samples");
+}
+
 /// A real one, of 64 KiB, where the system lets anybody mount it.
 #[cfg(target_os = "linux")]
 #[test]
