@@ -311,10 +311,7 @@ impl Drop for Session {
         self.shared.stop_refining.store(true, Ordering::Relaxed);
         self.shared.changed.notify_one();
         self.picks = None;
-        for thread in self.threads.drain(..) {
-            // A panic has been reported where it happened.
-            let _ = thread.join();
-        }
+        self.threads.drain(..).for_each(threads::part_from);
     }
 }
 

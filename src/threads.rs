@@ -4,6 +4,7 @@ use std::any::Any;
 use std::hint::black_box;
 use std::io;
 use std::thread::{Builder, JoinHandle};
+use std::time::{Duration, Instant};
 
 /// Bytes of stack that every thread has.
 pub const STACK: usize = 2 << 20;
@@ -81,6 +82,21 @@ fn or_fewer<T>(mut n: usize, start: impl Fn(usize) -> io::Result<T>) -> io::Resu
     }
 }
 
+/// Waits a second for a thread that was told to end; one that is deep in its work by then is left to
+/// end by itself, or with the process.
+pub fn part_from(thread: JoinHandle<()>) {
+    const PATIENCE: Duration = Duration::from_secs(1);
+    const LOOK: Duration = Duration::from_millis(2);
+    let start = Instant::now();
+    while !thread.is_finished() && start.elapsed() < PATIENCE {
+        std::thread::sleep(LOOK);
+    }
+    if thread.is_finished() {
+        // A panic has been reported where it happened.
+        let _ = thread.join();
+    }
+}
+
 fn lower_priority() {
     // On Linux niceness belongs to the thread.
     #[cfg(target_os = "linux")]
@@ -113,6 +129,26 @@ pub fn beside_window() -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn nobody_waits_for_a_thread_that_does_not_end() {
+        let (end, wait) = std::sync::mpsc::channel::<()>();
+        let (tell, told) = std::sync::mpsc::channel();
+        let work = move || {
+            let _ = wait.recv();
+            let _ = tell.send("ended");
+        };
+        part_from(spawn("slow", work).unwrap());
+        assert!(told.try_recv().is_err(), "it is still there");
+        drop(end);
+        assert_eq!(told.recv(), Ok("ended"), "by itself");
+        let (tell, told) = std::sync::mpsc::channel();
+        let work = move || {
+            let _ = tell.send("ended");
+        };
+        part_from(spawn("quick", work).unwrap());
+        assert_eq!(told.try_recv(), Ok("ended"), "waited for");
+    }
 
     #[test]
     fn where_threads_are_scarce_fewer_do() {

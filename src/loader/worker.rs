@@ -145,7 +145,7 @@ impl Drop for Loader {
         self.shared.lock().is_closing = true;
         self.shared.changed.notify_one();
         if let Some(thread) = self.thread.take() {
-            drop(thread.join());
+            threads::part_from(thread);
         }
     }
 }

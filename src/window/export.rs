@@ -149,8 +149,7 @@ impl Drop for Running {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
-            // A panic over there has been told already.
-            let _ = thread.join();
+            threads::part_from(thread);
         }
     }
 }
